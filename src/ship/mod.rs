@@ -574,7 +574,7 @@ impl Ship {
     ///
     /// Linear derivatives and added masses by Clarke, Gedling & Hine 1982; surge added mass by the Zhou 1983 regression of Motora's charts; X_vr by
     /// Hasegawa 1980; nonlinear derivatives by the Zhou 1983 regression of the charts of Inoue, Hirano & Kijima 1981.
-    /// Signs and units follow the equation in [`crate::terms::hull`]. An unknown name gives 0.
+    /// Signs and units follow the equation in [`crate::terms::hydrodynamics::hull`]. An unknown name gives 0.
     pub fn coefficient(&self, name: &str) -> f64 {
         if let Some(value) = self.coefficients.get(name) {
             return *value;

@@ -25,7 +25,7 @@ pub(in crate::fit) const NOISE_ITERATIONS: usize = 8;
 /// ```
 ///
 /// e_k is what a sensor reports less what the filter expects of it, and s_k its variance when the gains were made. What was an outlier then
-/// is left out. Priors are not part of it. A fit with [`Goal::Likelihood`](super::Goal::Likelihood) minimises it with the priors of
+/// is left out. Priors are not part of it. A fit with [`Goal::Likelihood`](crate::fit::Goal::Likelihood) minimises it with the priors of
 /// [`with_uncertain_coefficients`], and makes noise ([`noise_at`]) and gains anew where it ends, until the
 /// likelihood rises no more, and then gains alone, until this falls no more.
 pub struct Innovations<'a> {
