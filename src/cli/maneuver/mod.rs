@@ -402,7 +402,7 @@ fn pull_out(args: &AngleArgs) -> Result<(), CliError> {
     let said = match (stable, is_stability_open(&trials)) {
         (None, _) => "",
         (Some(_), true) => {
-            "\nWhether the yaw rates come together is open: the intervals of what is left of them contain both answers."
+            "\nThe intervals of the yaw rates that are left contain zero and more than zero: they leave open whether the ship is stable on its course."
         }
         (Some(true), false) => "\nThe yaw rates come together: the ship is stable on its course.",
         (Some(false), false) => "\nThe yaw rates do not come together: the ship is unstable on its course.",
