@@ -17,7 +17,7 @@
 //! effect.
 
 use super::covariance::Covariances;
-use super::inputs::{INPUT_CHANCE, InputError};
+use super::inputs::{APART_RECORDINGS, INPUT_CHANCE, InputError};
 use super::objectives::cost::Cost;
 use crate::fit::solver::task::Task;
 use crate::numerals::{number_of, sig};
@@ -47,9 +47,6 @@ pub const APART_CHANCE: f64 = 1e-3;
 
 /// Windows, evenly drawn, on which errors of the start are carried along.
 const STARTS: usize = 40;
-
-/// Recordings from which one can stand apart.
-const APART_RECORDINGS: usize = 4;
 
 /// Noise below which no sensor goes, as a share of what a residual is measured in (path length, pi, speed, r_max).
 const FINEST: f64 = 1e-6;
@@ -143,11 +140,7 @@ impl ResidualStatistics {
             tally.add(Residuals { recording: run.recording.clone(), values, variance }, drawn);
             Some(())
         });
-        let channels = ranks.total(tally.squares.clone());
-        let noise = channels.as_ref().map(|sums| noise(sums));
-        let by_start = noise.and_then(|noise| by_start(task, p, &noise)).unwrap_or_default();
-        let model_error = channels.and_then(|sums| over_noise(&sums, &by_start));
-        ResidualStatistics { model_error, ..tally.statistics(ranks) }
+        tally.statistics(ranks, |noise| by_start(task, p, noise).unwrap_or_default())
     }
 
     /// What the statistics say against the fit.
@@ -325,14 +318,15 @@ impl Tally {
         }
     }
 
-    /// The statistics of the runs of all ranks.
-    fn statistics(self, ranks: &Ranks) -> ResidualStatistics {
+    /// The statistics of the runs of all ranks; `by_start` gives the variances that errors of the start leave, by the noise of the sensors.
+    fn statistics(self, ranks: &Ranks, by_start: impl FnOnce(&[f64; STATES]) -> [f64; STATES]) -> ResidualStatistics {
+        let channels = ranks.total(self.squares);
         let growth = growth(ranks, &self.quarters);
         let (middle, apart) = apart(ranks, &self.recordings);
         ResidualStatistics {
             middle,
             apart,
-            model_error: ranks.total(self.squares).and_then(|sums| over_noise(&sums, &[0.0; STATES])),
+            model_error: channels.and_then(|sums| over_noise(&sums, &by_start(&noise(&sums)))),
             growth: growth.map(|g| g.0),
             growth_error: growth.and_then(|g| g.1),
             loss: loss(ranks, self.lost),
@@ -540,7 +534,7 @@ mod tests {
         for (recording, values) in made.iter().cloned() {
             tally.add(Residuals { recording, values, variance }, true);
         }
-        tally.statistics(Ranks::one())
+        tally.statistics(Ranks::one(), |_| [0.0; STATES])
     }
 
     #[test]

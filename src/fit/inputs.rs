@@ -16,7 +16,7 @@ use crate::likelihood::parameters::FreeParameter;
 use crate::model::Model;
 use crate::numerals::sig;
 use crate::recording::Runs;
-use crate::statistics::{corrected, furthest, means_differ_p};
+use crate::statistics::{corrected, furthest, means_differ_p, median, student_quantile, variance};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -25,7 +25,7 @@ use std::collections::{BTreeMap, BTreeSet};
 pub const INPUT_CHANCE: f64 = 1e-4;
 
 /// Recordings from which one can stand apart.
-const RECORDINGS: usize = 4;
+pub(in crate::fit) const APART_RECORDINGS: usize = 4;
 
 /// Information of a recording, as a share of the largest, below which it says nothing of an input.
 const NOTHING: f64 = 1e-9;
@@ -74,6 +74,53 @@ impl InputError {
     }
 }
 
+/// From which size on an error of an input would be told in one recording.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SeenInput {
+    /// The input in words.
+    pub input: String,
+    /// Gain or zero.
+    pub kind: InputErrorKind,
+    /// The size in a recording of middle information: a share, or rad.
+    pub smallest: f64,
+}
+
+impl SeenInput {
+    /// `gain of the rudder angle from 12 %`.
+    fn words(&self) -> String {
+        let Self { input, kind, smallest } = self;
+        match kind {
+            InputErrorKind::Gain => format!("gain of the {input} from {} %", sig(100.0 * smallest, 2)),
+            InputErrorKind::Zero => format!("zero of the {input} from {} deg", sig(smallest.to_degrees(), 2)),
+        }
+    }
+
+    /// What would be told of the inputs of single recordings, and what of all of them is not visible.
+    pub fn sentences(seen: &[Self], recordings: usize) -> String {
+        let mut told = if recordings < APART_RECORDINGS {
+            format!("Inputs of single recordings were not compared: that takes {APART_RECORDINGS} recordings.")
+        } else {
+            // What is beyond what it is a share of is no size.
+            let sizes: Vec<String> = seen.iter().filter(|s| s.smallest < 1.0).map(Self::words).collect();
+            match sizes.len() {
+                0 => "The recordings show no error of the inputs of a single one.".to_owned(),
+                _ => format!("An error of the inputs of one recording would be told: {}.", sizes.join("; ")),
+            }
+        };
+        told += " Not visible is what the coefficients take up: the same gain in all recordings, and mass, draught, propeller and rudder of the \
+                 ship file; compare them with the drawings.";
+        told
+    }
+}
+
+/// What a fit says of the inputs of its recordings.
+pub(in crate::fit) struct Inputs {
+    /// The error that is most significant, where one is.
+    pub error: Option<InputError>,
+    /// What would be told.
+    pub seen: Vec<SeenInput>,
+}
+
 /// An error that is asked for.
 struct Asked {
     input: String,
@@ -91,8 +138,12 @@ struct OfRecording {
     sums: Vec<[f64; 2]>,
 }
 
-/// The most significant error of an input at the estimates `p`, if there is one; `noise` is that of a fit by likelihood.
-pub(in crate::fit) fn input_error(task: &Task, p: &[f64], noise: Option<&Noise>) -> Option<InputError> {
+/// What the recordings show of their inputs at the estimates `p`; `noise` is that of a fit by likelihood.
+pub(in crate::fit) fn inputs(task: &Task, p: &[f64], noise: Option<&Noise>) -> Inputs {
+    compared(task, p, noise).unwrap_or(Inputs { error: None, seen: Vec::new() })
+}
+
+fn compared(task: &Task, p: &[f64], noise: Option<&Noise>) -> Option<Inputs> {
     let (model, asked) = with_errors(task.model_at(p));
     if asked.is_empty() {
         return None;
@@ -131,8 +182,48 @@ pub(in crate::fit) fn input_error(task: &Task, p: &[f64], noise: Option<&Noise>)
     let tests = 2.0 * asked.len() as f64;
     let found = asked.iter().filter_map(|a| most_significant(a, &all, place(a)?, &model));
     let found = found.map(|error| InputError { p: corrected(error.p, tests), ..error });
-    let first = found.min_by(|a, b| a.p.total_cmp(&b.p))?;
-    (!is_lost && first.p < INPUT_CHANCE).then_some(first)
+    let first = found.min_by(|a, b| a.p.total_cmp(&b.p));
+    let seen = asked.iter().filter_map(|a| smallest(a, &all, place(a)?, &model, INPUT_CHANCE / tests));
+    (!is_lost).then(|| Inputs { error: first.filter(|error| error.p < INPUT_CHANCE), seen: seen.collect() })
+}
+
+/// From which size on an error would be told in a recording of middle information, at a chance: the quantile of [`furthest`] times the
+/// scatter of z, over the root of the information.
+fn smallest(asked: &Asked, all: &[OfRecording], place: usize, model: &Model, chance: f64) -> Option<SeenInput> {
+    let known = known(all, place)?;
+    let n = known.len() as f64;
+    let z: Vec<f64> = known.iter().map(|r| r.z(place)).collect();
+    let quantile = student_quantile(1.0 - 0.5 * chance / n, n - 2.0);
+    let scatter = (variance(&z)? * n / (n - 1.0)).sqrt();
+    let middle = median(known.iter().map(|r| r.of(place)[1]))?;
+    let smallest = quantile * scatter / middle.sqrt() / asked.unit(model);
+    smallest.is_finite().then(|| SeenInput { input: asked.input.clone(), kind: asked.kind, smallest: smallest.abs() })
+}
+
+impl Asked {
+    /// What the parameter is a share of: a gain of the craft's own is one of what it is.
+    fn unit(&self, model: &Model) -> f64 {
+        model.index(&self.parameter).map(|i| model.parameters[i].value).filter(|v| *v != 0.0).unwrap_or(1.0)
+    }
+}
+
+impl OfRecording {
+    /// Score and information of the error at a place.
+    fn of(&self, place: usize) -> [f64; 2] {
+        self.sums.get(place).copied().unwrap_or([0.0; 2])
+    }
+
+    fn z(&self, place: usize) -> f64 {
+        let [score, information] = self.of(place);
+        score / information.sqrt()
+    }
+}
+
+/// The recordings that say something of an error, where they are enough to be compared.
+fn known(all: &[OfRecording], place: usize) -> Option<Vec<&OfRecording>> {
+    let largest = all.iter().map(|r| r.of(place)[1]).fold(0.0, f64::max);
+    let known: Vec<&OfRecording> = all.iter().filter(|r| r.of(place)[1] > NOTHING * largest).collect();
+    (known.len() >= APART_RECORDINGS).then_some(known)
 }
 
 /// The model with the errors of its inputs free and nothing else.
@@ -167,19 +258,13 @@ fn with_errors(mut model: Model) -> (Model, Vec<Asked>) {
 
 /// The recording or the session that stands furthest apart by one error, with its chance among all of them.
 fn most_significant(asked: &Asked, all: &[OfRecording], place: usize, model: &Model) -> Option<InputError> {
-    let sums = |r: &OfRecording| r.sums.get(place).copied().unwrap_or([0.0; 2]);
-    let largest = all.iter().map(|r| sums(r)[1]).fold(0.0, f64::max);
-    let known: Vec<&OfRecording> = all.iter().filter(|r| sums(r)[1] > NOTHING * largest).collect();
-    if known.len() < RECORDINGS {
-        return None;
-    }
-    let z = |r: &OfRecording| sums(r)[0] / sums(r)[1].sqrt();
+    let known = known(all, place)?;
+    let z = |r: &OfRecording| r.z(place);
     let step = |of: &mut dyn Iterator<Item = &&OfRecording>| {
-        let [score, information] = of.fold([0.0; 2], |[s, i], r| [s + sums(r)[0], i + sums(r)[1]]);
+        let [score, information] = of.fold([0.0; 2], |[s, i], r| [s + r.of(place)[0], i + r.of(place)[1]]);
         -score / information
     };
-    // A gain of the craft's own is a share of what it is.
-    let unit = model.index(&asked.parameter).map(|i| model.parameters[i].value).filter(|v| *v != 0.0).unwrap_or(1.0);
+    let unit = asked.unit(model);
     let error = |name: &str, is_session: bool, value: f64, p: f64| InputError {
         input: asked.input.clone(),
         kind: asked.kind,
@@ -212,8 +297,35 @@ mod tests {
         for objective in [Goal::Trajectory, Goal::Likelihood] {
             let mut settings = FitSettings { objective, integration: RK4, ..FitSettings::default() };
             settings.constraints.off = true;
-            assert_eq!(fit(&model(), &all, &settings, &mut |_| true).unwrap().input_error, None);
+            let fitted = fit(&model(), &all, &settings, &mut |_| true).unwrap();
+            assert_eq!(fitted.input_error, None);
+            assert_eq!(fitted.seen_inputs.len(), 3);
+            assert!(
+                fitted.seen_inputs.iter().all(|seen| (1e-4..1.0).contains(&seen.smallest)),
+                "{:?}",
+                fitted.seen_inputs
+            );
+            let few = fit(&model(), &all[..3], &settings, &mut |_| true).unwrap();
+            assert!(few.seen_inputs.is_empty());
+            assert!(
+                SeenInput::sentences(&few.seen_inputs, 3).starts_with("Inputs of single recordings were not compared")
+            );
         }
+    }
+
+    #[test]
+    fn an_error_of_the_size_that_would_be_told_is_at_the_limit() {
+        let asked =
+            Asked { input: "rudder angle".into(), kind: InputErrorKind::Gain, parameter: "rudder_gain.gain".into() };
+        let of = |z: f64| OfRecording { name: format!("{z}"), session: "a".into(), sums: vec![[z * 20.0, 400.0]] };
+        let sound: Vec<OfRecording> = (0..12).map(|i| of(f64::from(i % 4) - 1.5)).collect();
+        let seen = smallest(&asked, &sound, 0, &model(), 1e-4).unwrap();
+        // One more recording, with the error of that size beside the mean of the others.
+        let z: Vec<f64> = sound.iter().map(|r| r.z(0)).chain([-seen.smallest * 20.0]).collect();
+        let (worst, p) = furthest(&z).unwrap();
+        assert!(worst == 12 && (3e-5..3e-4).contains(&p), "{p}");
+        let said = SeenInput::sentences(&[seen], 12);
+        assert!(said.contains("gain of the rudder angle from ") && said.contains("Not visible"), "{said}");
     }
 
     #[test]

@@ -35,7 +35,7 @@ pub use covariance::{Covariance, CovarianceKind, SANDWICH_FROM};
 pub use doubts::{Doubt, DoubtKind, GROWTH_LIMIT, LIKENESS_LIMIT, MODEL_ERROR_LIMIT, ResidualStatistics};
 pub use error::FitError;
 #[cfg(feature = "ipopt")]
-pub use inputs::{INPUT_CHANCE, InputError, InputErrorKind};
+pub use inputs::{INPUT_CHANCE, InputError, InputErrorKind, SeenInput};
 #[cfg(feature = "ipopt")]
 pub use multistart::{MultiStart, StartOutcome, StartRow, multi_start, multi_start_over};
 pub use objectives::cost::{Compared, Cost, CostOptions, Derivatives, Quadratic, Residuals};

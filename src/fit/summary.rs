@@ -4,7 +4,7 @@
 use super::covariance::{Covariance, CovarianceKind, Covariances, in_words};
 use super::doubts::{Doubt, ResidualStatistics, headline};
 use super::error::FitError;
-use super::inputs::{InputError, input_error};
+use super::inputs::{InputError, Inputs, SeenInput, inputs};
 use super::settings::{FitSettings, Goal, Hessian};
 use crate::fit::objectives::cost::Cost;
 use crate::fit::objectives::evaluations::Evaluations;
@@ -91,6 +91,8 @@ pub struct Fit {
     /// The input that one recording or one session records in another way than the others, where there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub input_error: Option<InputError>,
+    /// From which size on an error of the inputs of one recording would be told.
+    pub seen_inputs: Vec<SeenInput>,
     /// The free parameters.
     pub estimates: Vec<Estimate>,
     /// Which covariance `covariance`, `correlations` and the standard errors are.
@@ -271,7 +273,7 @@ fn describe(task: &Task, evaluations: &Evaluations, noise: Option<&Noise>, unit:
     let statistics = ResidualStatistics::of(task, &end.p);
     let likeness = if unit == 1.0 { None } else { statistics.likeness };
     let covariances = Covariances::of(task, evaluations, unit, &end, likeness);
-    let input_error = input_error(task, &end.p, noise);
+    let Inputs { error: input_error, seen: seen_inputs } = inputs(task, &end.p, noise);
     let doubts = statistics.doubts(input_error.as_ref(), &covariances, task.scaling.scales.len());
     let mut validity = Count::new(&model);
     task.runs.iter().for_each(|run| validity.add(validity::samples(&run)));
@@ -283,6 +285,7 @@ fn describe(task: &Task, evaluations: &Evaluations, noise: Option<&Noise>, unit:
         doubts,
         residual_statistics: statistics,
         input_error,
+        seen_inputs,
         status: end.words.clone(),
         solver_status: end.solver,
         hessian: task.settings.hessian,

@@ -169,10 +169,7 @@ pub fn means_differ_p(a: &[f64], b: &[f64]) -> f64 {
     let [m, n] = [a, b].map(|v| v.len() as f64);
     let pooled = ((m - 1.0) * variances.0 + (n - 1.0) * variances.1) / (m + n - 2.0);
     let t = (means.0 - means.1).abs() / (pooled * (1.0 / m + 1.0 / n)).sqrt();
-    if !t.is_finite() {
-        return 1.0;
-    }
-    StudentsT::new(0.0, 1.0, m + n - 2.0).map_or(1.0, |d| (2.0 * d.sf(t)).max(f64::MIN_POSITIVE))
+    if t.is_finite() { student_p(t, m + n - 2.0) } else { 1.0 }
 }
 
 /// The variance of a sum of scores over c clusters, `c/(c-1) sum_c g_c g_c^T` with `g_c` the sum of the scores of cluster c (Liang &

@@ -3,7 +3,7 @@
 
 use super::active::lines;
 use super::table::Table;
-use crate::fit::{CovarianceKind, Derivatives, Estimate, Fit, Hessian, StartOutcome, labels};
+use crate::fit::{CovarianceKind, Derivatives, Estimate, Fit, Hessian, SeenInput, StartOutcome, labels};
 use crate::numerals::{interval, sig};
 
 /// Significant digits of every number.
@@ -191,6 +191,7 @@ impl Fit {
         if !strong.is_empty() {
             text += &format!("\n\nCorrelations beyond 0.9: {}", strong.join(", "));
         }
+        text += &format!("\n\n{}", SeenInput::sentences(&self.seen_inputs, self.recordings));
         text
     }
 

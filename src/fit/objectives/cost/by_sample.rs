@@ -68,23 +68,29 @@ impl Cost<'_> {
     }
 
     fn one_by_one_over<P: Plain>(&self, blocks: &Blocks<P>, p: &[f64], with_slopes: bool) -> Option<Residuals> {
-        let mut by_run = vec![Residuals::default(); self.runs.len()];
-        self.each(
-            blocks,
-            |block| self.of_block(block, p, with_slopes),
-            |runs, part| {
-                for (run, own) in runs.iter().zip(part?) {
-                    by_run[*run] = own;
-                }
-                Some(())
-            },
-        )?;
+        let by_run = self.by_run(blocks, |block| self.of_block(block, p, with_slopes))?;
         let mut all = Residuals::of(by_run.iter().map(|own| own.values.len()).sum(), self.slopes(with_slopes));
         for own in by_run {
             all.values.extend_from_slice(&own.values);
             all.slopes.extend_from_slice(&own.slopes);
         }
         Some(all)
+    }
+
+    /// What `work` makes of the runs of each block, in the order of the runs; `None` where it makes nothing of one.
+    fn by_run<P: Plain, T: Send + Default>(
+        &self,
+        blocks: &Blocks<P>,
+        work: impl Fn(&Block<P>) -> Option<Vec<T>> + Sync,
+    ) -> Option<Vec<T>> {
+        let mut by_run: Vec<T> = (0..self.runs.len()).map(|_| T::default()).collect();
+        self.each(blocks, work, |runs, part| {
+            for (run, own) in runs.iter().zip(part?) {
+                by_run[*run] = own;
+            }
+            Some(())
+        })?;
+        Some(by_run)
     }
 
     /// For each run of this rank and each free parameter p_j, `[sum r dr/dp_j, sum (dr/dp_j)^2]` over the run's residuals r; `None` where a
@@ -107,18 +113,7 @@ impl Cost<'_> {
             }
             sums
         };
-        let mut by_run = vec![Vec::new(); self.runs.len()];
-        self.each(
-            blocks,
-            |block| Some(self.of_block(block, p, true)?.iter().map(sums).collect::<Vec<_>>()),
-            |runs, part| {
-                for (run, own) in runs.iter().zip(part?) {
-                    by_run[*run] = own;
-                }
-                Some(())
-            },
-        )?;
-        Some(by_run)
+        self.by_run(blocks, |block| Some(self.of_block(block, p, true)?.iter().map(sums).collect()))
     }
 
     /// Derivatives of each residual.
