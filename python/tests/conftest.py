@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+import signal
 from pathlib import Path
 
 import pytest
 
 import trimtab
+
+
+@pytest.fixture(autouse=True, scope="session")
+def interruptible() -> None:
+    # A shell starts what it puts in the background with Ctrl-C ignored; the tests are of what a terminal starts.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="session")
