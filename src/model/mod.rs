@@ -236,13 +236,15 @@ pub struct Placed {
     pub offset: usize,
     /// How many parameters it has.
     pub len: usize,
+    /// How many parameters before its own it reads ([`Term::before`](crate::physics::Term::before)).
+    pub before: usize,
 }
 
 impl Placed {
-    /// The term's own part of a parameter vector.
+    /// What the term reads of a parameter vector: its own part, behind what it reads of the terms before it.
     #[inline]
     pub fn part<'a, C>(&self, theta: &'a [C]) -> &'a [C] {
-        &theta[self.offset..self.offset + self.len]
+        &theta[self.offset - self.before..self.offset + self.len]
     }
 }
 
@@ -527,7 +529,8 @@ impl Model {
             suggestion: suggestion(name, self.catalogue.iter().map(|t| t.info().name)),
         })?;
         let info = term.info();
-        self.terms.push(Placed { term, offset: self.parameters.len(), len: info.parameters.len() });
+        let (offset, len) = (self.parameters.len(), info.parameters.len());
+        self.terms.push(Placed { term, offset, len, before: term.before() });
         for parameter in info.parameters {
             let value = self.start(parameter);
             let (lower, upper) = self.default_bounds(info.name, parameter);
@@ -598,7 +601,7 @@ impl Model {
         let named = self.ship.actuator(term.name).is_some();
         match term.group {
             Group::Propulsion => !self.ship.has_propeller() && !named,
-            Group::Rudder => !self.ship.has_rudder(),
+            Group::Rudder => !self.ship.has_rudder() && !named,
             Group::Hull | Group::Environment | Group::External | Group::Sensor => false,
         }
     }

@@ -195,14 +195,15 @@ impl<S: Scalar> Flow<S> {
         let wake = wake * ahead;
         let advance = (S::one() - wake) * u;
         let screw = [p[index::KT0], p[index::KT1], p[index::KT2], p[index::ASTERN]];
-        let thrust = thrust(ship, small, screw, advance, at.inputs.n) * (adjust.thrust * ship.hull.water_density);
+        let d = ship.propeller.diameter;
+        let thrust = thrust(d, small, screw, advance, at.inputs.n) * (adjust.thrust * ship.hull.water_density);
         let positive = S::zero().less(thrust);
         let deducted = S::select(positive, thrust * p[index::THRUST_DEDUCTION], S::zero());
         let propulsion = thrust - deducted;
         let race = [p[index::RACE] * adjust.race, p[index::RACE_ASTERN], p[index::WAKE_RATIO]];
-        let rudder_u = axial(ship, small, race, advance, thrust);
+        let rudder_u = axial(&Race::of(ship), small, race, advance, thrust);
         let bend = [p[index::STRAIGHTENING], p[index::ASYMMETRY], p[index::LEVER]];
-        let rudder_v = lateral(ship, small, bend, across(at.form, v, speed, abs_u), r);
+        let rudder_v = lateral(ship.hull.lpp, small, bend, across(at.form, v, speed, abs_u), r);
         Self { u, v, r, speed, abs_u, abs_v, abs_r, current, advance, thrust, propulsion, rudder_u, rudder_v, adjust }
     }
 }
@@ -243,16 +244,16 @@ impl<S: Scalar<Coefficient = S>> Flow<S> {
         let [k0, k1, k2, astern, advance] =
             seeded([p[index::KT0], p[index::KT1], p[index::KT2], p[index::ASTERN], self.advance]);
         let unit = self.adjust.thrust * ship.hull.water_density;
-        let by_screw = thrust(ship, small, [k0, k1, k2, astern], advance, Dual::constant(at.inputs.n))
-            .eps
-            .map(|slope| slope * unit);
+        let d = ship.propeller.diameter;
+        let by_screw =
+            thrust(d, small, [k0, k1, k2, astern], advance, Dual::constant(at.inputs.n)).eps.map(|slope| slope * unit);
         let race = p[index::RACE] * self.adjust.race;
         let [race, race_astern, ratio, advance, thrust] =
             seeded([race, p[index::RACE_ASTERN], p[index::WAKE_RATIO], self.advance, self.thrust]);
-        let by_race = axial(ship, small, [race, race_astern, ratio], advance, thrust).eps;
+        let by_race = axial(&Race::of(ship), small, [race, race_astern, ratio], advance, thrust).eps;
         let bend = seeded([p[index::STRAIGHTENING], p[index::ASYMMETRY], p[index::LEVER]]);
         let across = across(at.form, self.v, self.speed, self.abs_u);
-        let by_bend = lateral(ship, small, bend, Dual::constant(across), Dual::constant(self.r)).eps;
+        let by_bend = lateral(ship.hull.lpp, small, bend, Dual::constant(across), Dual::constant(self.r)).eps;
 
         let positive = zero.less(self.thrust);
         let left = S::select(positive, S::one() - p[index::THRUST_DEDUCTION], S::one());
@@ -285,7 +286,7 @@ fn seeded<S: Scalar, const N: usize>(values: [S; N]) -> [Dual<S, N>; N] {
 
 /// 0 astern to 1 ahead, over a few small speeds.
 #[inline(always)]
-fn ahead<S: Scalar>(u: S, abs_u: S) -> S {
+pub(crate) fn ahead<S: Scalar>(u: S, abs_u: S) -> S {
     (u / abs_u + 1.0) * 0.5
 }
 
@@ -314,14 +315,14 @@ fn across<S: Scalar>(form: Form, v: S, speed: S, abs_u: S) -> S {
 
 /// Thrust over the density of water, before what terms change \[m4/s2\], from k0, k1, k2 and `astern`.
 #[inline(always)]
-fn thrust<S: Scalar>(
-    ship: &Ship,
+pub(crate) fn thrust<S: Scalar>(
+    diameter: f64,
     small: f64,
     [k0, k1, k2, astern]: [S::Coefficient; 4],
     advance: S,
     n: S::Coefficient,
 ) -> S {
-    let d = ship.propeller.diameter;
+    let d = diameter;
     let (zero, one) = (S::Coefficient::zero(), S::Coefficient::one());
     let reverse = n.less(zero);
     let k0 = k0 * S::Coefficient::select(reverse, astern, one);
@@ -331,22 +332,41 @@ fn thrust<S: Scalar>(
     advance * (k1 * abs_n * d.powi(3)) + advance * pace * (k2 * d.powi(2)) + k0 * n * abs_n * d.powi(4)
 }
 
+/// A propeller and the blade that stands in its race.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Race {
+    /// Density of the water \[kg/m3\].
+    pub density: f64,
+    /// Diameter of the propeller \[m\].
+    pub diameter: f64,
+    /// Span of the blade \[m\].
+    pub span: f64,
+}
+
+impl Race {
+    /// That of propeller and rudder.
+    #[inline(always)]
+    fn of(ship: &Ship) -> Self {
+        Self { density: ship.hull.water_density, diameter: ship.propeller.diameter, span: ship.rudder.span }
+    }
+}
+
 /// Axial rudder inflow u_R \[m/s\] from kappa, kappa_a and eps, the advance velocity \[m/s\] and the thrust \[N\].
 #[inline(always)]
-fn axial<S: Scalar>(
-    ship: &Ship,
+pub(crate) fn axial<S: Scalar>(
+    behind: &Race,
     small: f64,
     [race, race_astern, ratio]: [S::Coefficient; 3],
     advance: S,
     thrust: S,
 ) -> S {
-    let (rho, d) = (ship.hull.water_density, ship.propeller.diameter);
+    let (rho, d) = (behind.density, behind.diameter);
     let tiny = small * small;
     let positive = S::zero().less(thrust);
     let c = thrust * (8.0 / (PI * rho * d * d));
     let c_ahead = S::select(positive, c, S::zero());
     let c_astern = S::select(positive, S::zero(), -c);
-    let eta = (d / ship.rudder.span).min(1.0);
+    let eta = (d / behind.span).min(1.0);
     let square = advance * advance + 1e-2 * tiny;
     let race = ((square + c_ahead).sqrt() - advance.abs()) * race
         - ((c_astern + 1e-2 * tiny).sqrt() - 0.1 * small) * race_astern;
@@ -358,13 +378,13 @@ fn axial<S: Scalar>(
 
 /// Lateral rudder inflow v_R \[m/s\] from gamma, dgamma and l_R/L, at a lateral velocity \[m/s\] and a yaw rate \[rad/s\].
 #[inline(always)]
-fn lateral<S: Scalar>(
-    ship: &Ship,
+pub(crate) fn lateral<S: Scalar>(
+    lpp: f64,
     small: f64,
     [straightening, asymmetry, lever]: [S::Coefficient; 3],
     v: S,
     r: S,
 ) -> S {
-    let lateral = v + r * (lever * ship.hull.lpp);
+    let lateral = v + r * (lever * lpp);
     -lateral * (straightening + lateral * asymmetry / (lateral * lateral + small * small).sqrt())
 }

@@ -61,6 +61,12 @@ pub trait Term: Sync {
     fn reach(&self, _parameter: usize) -> Reach {
         Reach::Anything
     }
+
+    /// How many parameters of the terms before it in a model the term reads as well: its `p` begins with these, and its own follow. 0
+    /// for most; a rudder in a propeller's race reads the propeller's.
+    fn before(&self) -> usize {
+        0
+    }
 }
 
 /// What a parameter can change.
@@ -83,7 +89,7 @@ pub enum Reach {
 
 /// What a term computes, generic over the number. Every method defaults to "no effect".
 ///
-/// `p` contains the term's own parameters in the order of its `TermInfo`. At its default parameters a term that is not part
+/// `p` contains the term's own parameters in the order of its `TermInfo`, behind those of [`Term::before`]. At its default parameters a term that is not part
 /// of the base model must have no effect at all.
 pub trait Physics<S: Scalar>: Term {
     /// Changes the inputs of a whole run before it is simulated (actuator lag, rudder offset). `dt` is the sample

@@ -289,7 +289,12 @@ fn command(name: &str) -> Option<&'static ChannelInfo> {
     let place = u16::try_from(known.len()).ok()?;
     let (quantity, limits, what, doc) = match drive {
         Drive::Rate => (Quantity::Rotation, THRUSTER, "rate", "rate, positive ahead"),
-        Drive::Angle => (Quantity::Angle, HEADING, "angle", "direction in which it pushes, clockwise from the bow"),
+        Drive::Angle => (
+            Quantity::Angle,
+            HEADING,
+            "angle",
+            "direction in which it pushes, clockwise from the bow; of a foil its angle, positive as `delta`",
+        ),
         Drive::Order => (Quantity::Number, ORDER, "order", "order, in any unit of its own"),
         Drive::X => (Quantity::Force, FORCE, "surge force", "force forward"),
         Drive::Y => (Quantity::Force, FORCE, "sway force", "force to starboard"),

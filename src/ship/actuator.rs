@@ -17,7 +17,8 @@ pub struct Actuator {
     /// Place \[m\], to starboard of the centre line.
     #[serde(default)]
     pub y: f64,
-    /// Direction in which it pushes the craft \[deg\], clockwise from the bow; left out: the channel NAME.angle. Not for law `force`.
+    /// Direction in which it pushes the craft \[deg\], clockwise from the bow; left out: the channel NAME.angle. Not for the laws `force`
+    /// and `foil`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub angle: Option<f64>,
     /// How its force follows from its channels.
@@ -28,9 +29,30 @@ pub struct Actuator {
     /// Where its gain begins; estimated from the size of the craft when left out, 1 for law `force`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gain: Option<f64>,
-    /// Law `thruster`: thrust astern over thrust ahead \[-\]; 1 when left out.
+    /// Laws `thruster` and `propeller`: thrust astern over thrust ahead, at rest \[-\]; 1 and 0.74 when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub astern: Option<f64>,
+    /// Law `propeller`: diameter D \[m\].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub diameter: Option<f64>,
+    /// Law `propeller`: `K_T(J) = k0 + k1 J + k2 J^2`; that of a B4-70 with P/D = 0.8 when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub thrust_coefficients: Option<[f64; 3]>,
+    /// Law `propeller`: effective wake fraction in straight running w \[-\]; Taylor's for this block coefficient when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wake: Option<f64>,
+    /// Law `propeller`: thrust deduction t \[-\]; 0.6 w on the centre line and 0.25 w + 0.14 beside it when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub thrust_deduction: Option<f64>,
+    /// Law `foil`: area of the blade A \[m2\].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub area: Option<f64>,
+    /// Law `foil`: span of the blade H \[m\]; sqrt(1.8 A) when left out, a rudder of usual aspect ratio.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub span: Option<f64>,
+    /// Law `foil`: name of the actuator of law `propeller`, listed before it, in whose race it stands.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub behind: Option<String>,
     /// Law `force`: which of X, Y and N are recorded; all three when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub components: Option<Vec<Component>>,
@@ -46,7 +68,17 @@ pub enum Law {
     Order,
     /// A propeller at the rate NAME.rate: T = k (n|n| - l |n| u_a), u_a the inflow along its axis.
     Thruster,
+    /// A propeller at the rate NAME.rate by its open-water curve: T = rho n^2 D^4 K_T(J), in all quadrants.
+    Propeller,
+    /// A rudder at the angle NAME.angle, positive as `delta`: aft of midship it turns the craft to starboard.
+    Foil,
 }
+
+/// Aspect ratio of a blade of which the area alone is known \[-\]: the middle of 1.5 to 2.2 of ships' rudders.
+const USUAL_ASPECT: f64 = 1.8;
+
+/// K_T of a Wageningen B4-70 with P/D = 0.8 (Roddy, Hess & Faller 2006), fitted from J = 0 to 0.8.
+const USUAL_THRUST: [f64; 3] = [0.3425, -0.2424, -0.1897];
 
 /// A lag: a time, or one that is estimated.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize, PartialEq, JsonSchema)]
@@ -131,8 +163,75 @@ impl Actuator {
         match self.law {
             Law::Force => self.components().into_iter().map(Component::drive).collect(),
             Law::Order => [Some(Drive::Order), turned].into_iter().flatten().collect(),
-            Law::Thruster => [Some(Drive::Rate), turned].into_iter().flatten().collect(),
+            Law::Thruster | Law::Propeller => [Some(Drive::Rate), turned].into_iter().flatten().collect(),
+            Law::Foil => vec![Drive::Angle],
         }
+    }
+
+    /// 1 where a positive rate pushes it ahead along the keel in a trial, -1 where it pushes astern, 0 where it has no rate or lies across.
+    pub(super) fn drives_ahead(&self) -> f64 {
+        let along = self.angle.map_or(1.0, |angle| angle.to_radians().cos());
+        let turns = matches!(self.law, Law::Thruster | Law::Propeller);
+        if turns && along.abs() > 0.5 { along.signum() } else { 0.0 }
+    }
+
+    /// Its angle per rudder angle in a trial: 1 of a rudder aft, -1 of a thruster aft, whose push to port turns the craft to starboard.
+    pub(super) fn steers(&self) -> f64 {
+        match (self.law, self.angle) {
+            _ if self.x >= 0.0 => 0.0,
+            (Law::Foil, _) => 1.0,
+            (Law::Thruster | Law::Propeller, None) => -1.0,
+            _ => 0.0,
+        }
+    }
+
+    /// Span of its blade \[m\].
+    pub fn blade_span(&self) -> f64 {
+        self.span.unwrap_or_else(|| (USUAL_ASPECT * self.area.unwrap_or(0.0)).sqrt())
+    }
+
+    /// Where its parameters begin, as far as they are its own and not those of any craft of the size: by name, from length \[m\] and
+    /// block coefficient of the hull.
+    ///
+    /// Wake by Taylor, 0.5 C_b - 0.05 on the centre line and 0.55 C_b - 0.20 beside it, with the thrust deductions of Schoenherr (Lewis
+    /// 1988, Principles of Naval Architecture II, p. 159). A rudder in a race begins as in the standard MMG method, one in the stream as
+    /// a foil alone.
+    pub fn starts(&self, lpp: f64, block: f64) -> Vec<(&'static str, f64)> {
+        let lag = self.lag.and_then(|lag| match lag {
+            Lag::Seconds(lag) => Some(lag),
+            Lag::Word(_) => None,
+        });
+        let given = |name: &'static str, value: Option<f64>| value.map(|value| (name, value));
+        let own = match self.law {
+            Law::Force => self.components().iter().filter_map(|c| given(c.gain(), self.gain)).collect(),
+            Law::Order => given("gain", self.gain).into_iter().collect(),
+            Law::Thruster => [given("gain", self.gain), given("astern", self.astern)].into_iter().flatten().collect(),
+            Law::Propeller => {
+                let is_central = self.y == 0.0;
+                let taylor = if is_central { 0.5 * block - 0.05 } else { 0.55 * block - 0.20 };
+                let wake = self.wake.unwrap_or(taylor.max(0.0));
+                let deduction = if is_central { 0.6 * wake } else { 0.25 * wake + 0.14 };
+                let [k0, k1, k2] = self.thrust_coefficients.unwrap_or(USUAL_THRUST);
+                let deduction = self.thrust_deduction.unwrap_or(deduction);
+                let curve = [("kt0", k0), ("kt1", k1), ("kt2", k2), ("astern", self.astern.unwrap_or(0.74))];
+                [("wake", wake), ("thrust_deduction", deduction)].into_iter().chain(curve).collect()
+            }
+            Law::Foil => {
+                let span = self.blade_span();
+                let aspect = span * span / self.area.unwrap_or(1.0);
+                let slope = ("slope", 6.13 * aspect / (aspect + 2.25));
+                let place = self.x / lpp;
+                if self.behind.is_none() {
+                    vec![slope, ("wake_ratio", 1.0), ("straightening", 1.0), ("lever", place)]
+                } else {
+                    // The lever of a single rudder, -0.85 L at -0.5 L, in proportion.
+                    let flow = [("wake_ratio", 1.05), ("straightening", 0.45), ("lever", 1.7 * place), ("race", 0.5)];
+                    let induced = [("t_R", 0.45 - 0.28 * block), ("a_H", 0.627 * block - 0.153), ("x_H", -0.45)];
+                    [slope, ("race_astern", 0.144)].into_iter().chain(flow).chain(induced).collect()
+                }
+            }
+        };
+        own.into_iter().chain(given("lag", lag)).collect()
     }
 
     /// The components of its force that are recorded, each once.
@@ -163,18 +262,62 @@ impl Actuator {
         number("angle", self.angle, -360.0, 360.0, "in degrees, clockwise from the bow");
         number("gain", self.gain, -1e12, 1e12, "force for one unit of the channel");
         number("astern", self.astern, 0.0, 2.0, "thrust astern over thrust ahead");
+        number("diameter", self.diameter, 1e-3, lpp, "of the propeller in m");
+        number("wake", self.wake, 0.0, 0.9, "effective wake fraction in straight running");
+        number("thrust_deduction", self.thrust_deduction, 0.0, 0.8, "share of the thrust ahead that the hull takes");
+        number("thrust_coefficients k0", self.thrust_coefficients.map(|k| k[0]), 0.0, 2.0, "K_T at rest");
+        number("thrust_coefficients k1", self.thrust_coefficients.map(|k| k[1]), -2.0, 0.0, "slope of K_T over J");
+        number("thrust_coefficients k2", self.thrust_coefficients.map(|k| k[2]), -2.0, 1.0, "curvature of K_T over J");
+        number("area", self.area, 1e-6, lpp * lpp, "of the blade in m2");
+        number("span", self.span, 1e-3, lpp, "of the blade in m");
         if let Some(Lag::Seconds(lag)) = self.lag {
             number("lag", Some(lag), 0.0, MOST_LAG, "a time constant in s, or \"free\"");
         }
-        let wrong = |given: bool, key, law| given.then(|| (key, f64::NAN, format!("belongs to law `{law}` alone")));
-        faults.extend(wrong(self.astern.is_some() && self.law != Law::Thruster, "astern", "thruster"));
-        faults.extend(wrong(self.components.is_some() && self.law != Law::Force, "components", "force"));
-        if self.law == Law::Force && self.angle.is_some() {
-            faults.push(("angle", f64::NAN, "is not for law `force`, whose components say the direction".into()));
-        }
+        faults.extend(self.misplaced());
         if self.components.as_ref().is_some_and(Vec::is_empty) {
             faults.push(("components", f64::NAN, "must name one of X, Y and N at least".into()));
         }
+        faults
+    }
+
+    /// Keys that belong to another law, and those that its own needs.
+    fn misplaced(&self) -> Vec<(&'static str, f64, String)> {
+        let (thruster, propeller, foil) = ("`thruster`", "`propeller`", "`foil`");
+        let belongs: [(&'static str, bool, &[Law], String); 11] = [
+            (
+                "gain",
+                self.gain.is_some(),
+                &[Law::Force, Law::Order, Law::Thruster],
+                "`force`, `order`, `thruster`".into(),
+            ),
+            ("astern", self.astern.is_some(), &[Law::Thruster, Law::Propeller], format!("{thruster}, {propeller}")),
+            ("components", self.components.is_some(), &[Law::Force], "`force`".into()),
+            ("diameter", self.diameter.is_some(), &[Law::Propeller], propeller.into()),
+            ("thrust_coefficients", self.thrust_coefficients.is_some(), &[Law::Propeller], propeller.into()),
+            ("wake", self.wake.is_some(), &[Law::Propeller], propeller.into()),
+            ("thrust_deduction", self.thrust_deduction.is_some(), &[Law::Propeller], propeller.into()),
+            ("area", self.area.is_some(), &[Law::Foil], foil.into()),
+            ("span", self.span.is_some(), &[Law::Foil], foil.into()),
+            ("behind", self.behind.is_some(), &[Law::Foil], foil.into()),
+            (
+                "angle",
+                self.angle.is_some(),
+                &[Law::Order, Law::Thruster, Law::Propeller],
+                format!(
+                    "`order`, {thruster}, {propeller}: the components of a logged force say its direction, and a foil has the channel NAME.angle"
+                ),
+            ),
+        ];
+        let wrong = belongs.into_iter().filter(|(_, given, laws, _)| *given && !laws.contains(&self.law));
+        let mut faults: Vec<_> =
+            wrong.map(|(key, _, _, laws)| (key, f64::NAN, format!("belongs to law {laws}"))).collect();
+        let mut needs = |law: Law, key, given: bool, words: &str| {
+            if self.law == law && !given {
+                faults.push((key, f64::NAN, format!("is missing: {words}")));
+            }
+        };
+        needs(Law::Propeller, "diameter", self.diameter.is_some(), "the propeller's, in m");
+        needs(Law::Foil, "area", self.area.is_some(), "the blade's, in m2");
         faults
     }
 }
@@ -183,6 +326,15 @@ impl Actuator {
 pub const MOST_LAG: f64 = 300.0;
 
 impl Component {
+    /// Name of the parameter that multiplies it.
+    fn gain(self) -> &'static str {
+        match self {
+            Self::X => "gain_x",
+            Self::Y => "gain_y",
+            Self::N => "gain_n",
+        }
+    }
+
     fn drive(self) -> Drive {
         match self {
             Self::X => Drive::X,
@@ -227,6 +379,21 @@ pub fn list_fault(actuators: &[Actuator]) -> Option<(String, String)> {
         };
         return Some((name.clone(), format!("`{name}` {fault}")));
     }
+    for (i, a) in actuators.iter().enumerate() {
+        let Some(ahead) = &a.behind else { continue };
+        let before = actuators[..i].iter().find(|other| other.name == *ahead);
+        let fault = match before {
+            Some(other) if other.law == Law::Propeller && other.angle.is_some() => continue,
+            Some(_) => {
+                "is no actuator of law `propeller` with a fixed `angle`; a foil in the stream alone has no `behind`"
+            }
+            None if actuators.iter().any(|other| other.name == *ahead) => {
+                "is listed after it; list the propeller first"
+            }
+            None => "is the name of no actuator",
+        };
+        return Some((a.name.clone(), format!("actuator `{}`: behind = `{ahead}` {fault}", a.name)));
+    }
     let count = channels(actuators).len();
     let text = format!("the actuators have {count} channels together; at most {COMMANDS} are simulated");
     (count > COMMANDS).then(|| ("actuator".to_owned(), text))
@@ -268,6 +435,12 @@ mod tests {
             ("name = \"a\"\nlaw = \"force\"\nangle = 0", "angle"),
             ("name = \"a\"\nlaw = \"force\"\nx = 40", "x"),
             ("name = \"a\"\nlaw = \"force\"\nlag = -1", "lag"),
+            ("name = \"a\"\nlaw = \"propeller\"\nangle = 0", "diameter"),
+            ("name = \"a\"\nlaw = \"propeller\"\nangle = 0\ndiameter = 9", "diameter"),
+            ("name = \"a\"\nlaw = \"propeller\"\nangle = 0\ndiameter = 0.1\ngain = 1", "gain"),
+            ("name = \"a\"\nlaw = \"foil\"", "area"),
+            ("name = \"a\"\nlaw = \"foil\"\narea = 0.01\nangle = 0", "angle"),
+            ("name = \"a\"\nlaw = \"order\"\nangle = 0\nbehind = \"b\"", "behind"),
         ] {
             assert_eq!(actuator(text).faults(2.0)[0].0, key, "{text}");
         }
@@ -294,6 +467,19 @@ mod tests {
         assert!(pairs(&apart).is_empty());
         let tau = Actuator { law: Law::Force, angle: None, ..apart[1].clone() };
         assert!(pairs(&[apart[0].clone(), Actuator { x: 0.0, ..tau }]).is_empty());
+    }
+
+    #[test]
+    fn a_foil_stands_behind_a_propeller_that_is_listed_before_it() {
+        let screw = actuator("name = \"screw\"\nlaw = \"propeller\"\nangle = 0\ndiameter = 0.1");
+        let rudder = actuator("name = \"rudder\"\nlaw = \"foil\"\narea = 0.01\nbehind = \"screw\"");
+        assert_eq!(channels(&[screw.clone(), rudder.clone()]), ["screw.rate", "rudder.angle"]);
+        assert!(list_fault(&[screw.clone(), rudder.clone()]).is_none());
+        let said = |list: &[Actuator]| list_fault(list).unwrap().1;
+        assert!(said(&[rudder.clone(), screw.clone()]).contains("list the propeller first"));
+        assert!(said(std::slice::from_ref(&rudder)).contains("name of no actuator"));
+        let azimuth = Actuator { angle: None, ..screw };
+        assert!(said(&[azimuth, rudder]).contains("fixed `angle`"));
     }
 
     #[test]

@@ -1,8 +1,9 @@
 //! A craft that is not a ship with one propeller and one rudder: what stands in for these, and the particulars that it may leave out.
 //! What its actuators do is theirs.
 
-use super::actuator::{self, Actuator};
+use super::actuator::{self, Actuator, Drive};
 use super::{PropellerParticulars, RudderParticulars, Ship, ShipError, Source};
+use crate::state::Inputs;
 use std::collections::BTreeMap;
 
 /// Block coefficient of a craft that gives neither it nor its draught \[-\]: the middle of 0.5 (yachts, catamaran hulls) and 0.7.
@@ -74,22 +75,44 @@ impl Ship {
     pub fn given_parameters(&self) -> BTreeMap<String, f64> {
         let mut given = self.parameters.clone();
         for a in &self.actuators {
-            let lag = a.lag.and_then(|lag| match lag {
-                actuator::Lag::Seconds(lag) => Some(lag),
-                actuator::Lag::Word(_) => None,
-            });
-            let gains: Vec<String> = match a.law {
-                actuator::Law::Force => a.components().iter().map(|c| format!("gain_{c:?}").to_lowercase()).collect(),
-                actuator::Law::Order | actuator::Law::Thruster => vec!["gain".to_owned()],
-            };
-            let values = gains.into_iter().map(|name| (name, a.gain));
-            for (name, value) in values.chain([("lag".to_owned(), lag), ("astern".to_owned(), a.astern)]) {
-                if let Some(value) = value {
-                    given.entry(format!("{}.{name}", a.name)).or_insert(value);
-                }
+            for (name, value) in a.starts(self.hull.lpp, self.hull.block_coefficient) {
+                given.entry(format!("{}.{name}", a.name)).or_insert(value);
             }
         }
         given
+    }
+
+    /// Whether there is a propeller that trials can be sailed with: that of `n`, or a named one that pushes along the keel.
+    pub fn is_driven(&self) -> bool {
+        self.has_propeller() || self.actuators.iter().any(|a| a.drives_ahead() != 0.0)
+    }
+
+    /// Whether there is something to steer trials with: the rudder of `delta`, or a named actuator aft that turns.
+    pub fn is_steered(&self) -> bool {
+        self.has_rudder() || self.actuators.iter().any(|a| a.steers() != 0.0)
+    }
+
+    /// What acts on the craft at `t` \[s\] where every propeller turns at `n` \[1/s\] ahead and every rudder is at `delta` \[rad\], positive to
+    /// starboard: `n` and `delta`, and of the named actuators the rates along the keel and the angles aft, others at rest.
+    pub fn inputs_ordered(&self, t: f64, n: f64, delta: f64) -> Inputs<f64> {
+        let mut inputs = Inputs::actuators(t, n, delta);
+        let ordered = self.actuators.iter().flat_map(|a| {
+            a.drives().into_iter().map(|drive| match drive {
+                Drive::Rate => a.drives_ahead() * n,
+                Drive::Angle => a.steers() * delta,
+                Drive::Order | Drive::X | Drive::Y | Drive::N => 0.0,
+            })
+        });
+        for (command, order) in inputs.commands.iter_mut().zip(ordered) {
+            *command = order;
+        }
+        inputs
+    }
+
+    /// Length \[m\] that the advance of a propeller is measured with: its diameter, of a thruster of unknown make 2 % of the length.
+    pub fn screw_diameter(&self) -> f64 {
+        let named = self.actuators.iter().find_map(|a| a.diameter);
+        if self.has_propeller() { self.propeller.diameter } else { named.unwrap_or(0.02 * self.hull.lpp) }
     }
 
     /// Draught and block coefficient where the file leaves them out: the one that is missing from m = rho L B d C_b.

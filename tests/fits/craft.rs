@@ -12,13 +12,14 @@ const CATAMARAN: &str = "name = \"cat\"\n[hull]\nlpp = 1.2\nbreadth = 0.9\nmass 
                          [[actuator]]\nname = \"port\"\ny = -0.3\nlaw = \"thruster\"\nangle = 0\nlag = \"free\"\n\
                          [[actuator]]\nname = \"starboard\"\ny = 0.3\nlaw = \"force\"\ncomponents = [\"X\"]\n";
 
+const TWIN_SCREW: &str = "name = \"ferry\"\n[hull]\nlpp = 6.0\nbreadth = 1.4\ndraught = 0.4\nmass = 1900.0\n\
+                          [[actuator]]\nname = \"port_screw\"\nx = -2.7\ny = -0.4\nlaw = \"propeller\"\nangle = 0\ndiameter = 0.28\n\
+                          [[actuator]]\nname = \"starboard_screw\"\nx = -2.7\ny = 0.4\nlaw = \"propeller\"\nangle = 0\ndiameter = 0.28\n\
+                          [[actuator]]\nname = \"port_rudder\"\nx = -2.9\ny = -0.4\nlaw = \"foil\"\narea = 0.06\nbehind = \"port_screw\"\n\
+                          [[actuator]]\nname = \"starboard_rudder\"\nx = -2.9\ny = 0.4\nlaw = \"foil\"\narea = 0.06\nbehind = \"starboard_screw\"\n";
+
 #[test]
 fn gains_and_a_lag_that_are_known_come_back() {
-    let ship = Ship::parse(CATAMARAN, Path::new("ship.toml")).unwrap();
-    let text = "name = \"m\"\nform = \"general\"\n[parameters]\n\"general_hull.surge_linear\" = { free = true }\n\
-                \"general_hull.yaw_linear\" = { free = true }\n";
-    let model = Model::parse(text, Path::new("model.toml"), ship).unwrap();
-    let mut truth = model.clone();
     let known = [
         ("port.gain", 0.006),
         ("port.lag", 0.8),
@@ -26,17 +27,45 @@ fn gains_and_a_lag_that_are_known_come_back() {
         ("general_hull.surge_linear", 4.0),
         ("general_hull.yaw_linear", 5.0),
     ];
-    truth.set(&known).unwrap();
+    come_back(CATAMARAN, &known, 0.4, |t, i| vec![40.0 * (0.4 * t + i).sin(), 30.0 * (0.23 * t - i).cos()]);
+}
+
+#[test]
+fn twin_screws_with_rudders_in_their_races_come_back() {
+    let known = [
+        ("port_rudder.slope", 2.1),
+        ("starboard_rudder.slope", 2.9),
+        ("port_rudder.race", 0.6),
+        ("port_screw.wake", 0.2),
+        ("port_screw.lost", 0.15),
+        ("starboard_screw.kt0", 0.3),
+        ("general_hull.surge_square", 60.0),
+        ("general_hull.yaw_linear", 900.0),
+    ];
+    come_back(TWIN_SCREW, &known, 1.2, |t, i| {
+        let [port, starboard] = [7.0 + 3.0 * (0.2 * t + i).sin(), 7.0 + 3.0 * (0.33 * t - i).cos()];
+        vec![port, starboard, 0.4 * (0.5 * t + i).sin(), 0.4 * (0.37 * t - 2.0 * i).sin()]
+    });
+}
+
+/// Fits parameters to a craft sailed with their known values under the commands of each time \[s\] and run, from where they begin.
+fn come_back(craft: &str, known: &[(&str, f64)], speed: f64, commands: impl Fn(f64, f64) -> Vec<f64>) {
+    let ship = Ship::parse(craft, Path::new("ship.toml")).unwrap();
+    let free: String = known.iter().map(|(name, _)| format!("\"{name}\" = {{ free = true }}\n")).collect();
+    let text = format!("name = \"m\"\nform = \"general\"\n[parameters]\n{free}");
+    let model = Model::parse(&text, Path::new("model.toml"), ship).unwrap();
+    let mut truth = model.clone();
+    truth.set(known).unwrap();
     let run = |i: u32| {
         let at = |k: u32| {
             let t = 0.1 * f64::from(k);
             let mut inputs = Inputs::actuators(t, 0.0, 0.0);
-            inputs.commands[0] = 40.0 * (0.4 * t + f64::from(i)).sin();
-            inputs.commands[1] = 30.0 * (0.23 * t - f64::from(i)).cos();
+            let now = commands(t, f64::from(i));
+            inputs.commands[..now.len()].copy_from_slice(&now);
             inputs
         };
         let inputs: Vec<Inputs<f64>> = (0..300).map(at).collect();
-        let initial = [0.0, 0.0, f64::from(i), 0.4, 0.0, 0.0];
+        let initial = [0.0, 0.0, f64::from(i), speed, 0.0, 0.0];
         let scenario = Scenario { dt: 0.1, inputs: inputs.clone(), initial };
         let sailed = simulate(&truth, &truth.values(), Integration::default(), &scenario);
         Run {

@@ -45,6 +45,50 @@ law = \"force\"
 lag = \"free\"
 ";
 
+/// Twin screws with a rudder behind each, and a rudder in the stream between them: five channels.
+const TWIN: &str = "
+[[actuator]]
+name = \"port_screw\"
+x = -2.2
+y = -0.6
+angle = 0
+law = \"propeller\"
+diameter = 0.4
+thrust_coefficients = [0.34, -0.24, -0.19]
+[[actuator]]
+name = \"starboard_screw\"
+x = -2.2
+y = 0.6
+angle = 0
+law = \"propeller\"
+diameter = 0.4
+thrust_coefficients = [0.34, -0.24, -0.19]
+lag = 0.3
+[[actuator]]
+name = \"port_rudder\"
+x = -2.4
+y = -0.6
+law = \"foil\"
+area = 0.12
+behind = \"port_screw\"
+[[actuator]]
+name = \"starboard_rudder\"
+x = -2.4
+y = 0.6
+law = \"foil\"
+area = 0.12
+behind = \"starboard_screw\"
+lag = \"free\"
+[[actuator]]
+name = \"skeg\"
+x = -2.4
+law = \"foil\"
+area = 0.1
+span = 0.5
+";
+
+const TURNED: [f64; 10] = [5.0, 6.0, 0.3, 0.2, -0.25, 0.0, 0.0, 0.0, 0.0, 0.0];
+
 fn ship(actuators: &str) -> Ship {
     Ship::parse(&format!("{CRAFT}{actuators}"), Path::new("ship.toml")).unwrap()
 }
@@ -164,10 +208,16 @@ fn in_moving_water_the_track_is_that_of_still_water_and_the_drift() {
 
 #[test]
 fn derivatives_by_every_parameter_are_those_of_differences() {
-    let model = moved(model(ACTUATORS, Form::General));
+    assert!(slopes_seen(ACTUATORS, COMMANDED, "port.") > 10);
+    assert!(slopes_seen(TWIN, TURNED, "port_screw.") > 20 && slopes_seen(TWIN, TURNED, "port_rudder.") > 20);
+}
+
+/// How many derivatives by parameters of that name are not 0; all are those of differences.
+fn slopes_seen(actuators: &str, commands: [f64; 10], of: &str) -> usize {
+    let model = moved(model(actuators, Form::General));
     let columns: Vec<Column> = (0..model.parameters.len()).map(|parameter| Column { parameter, scale: 1.0 }).collect();
     let series: Vec<Inputs<f64>> =
-        (0..60).map(|k| commanded(COMMANDED.map(|c| c * (0.3 + f64::from(k) * 0.11).cos()))).collect();
+        (0..60).map(|k| commanded(commands.map(|c| c * (0.3 + f64::from(k) * 0.11).cos()))).collect();
     let initial = [0.0, 0.0, 0.4, 0.8, -0.1, 0.05];
     let dynamics = Dynamics::new(&model, model.values());
     let grouped = Columns::new(&model, &columns);
@@ -191,10 +241,70 @@ fn derivatives_by_every_parameter_are_those_of_differences() {
             let by_difference = (up[j] - down[j]) / (2.0 * step);
             let off = (slopes[i][j] - by_difference).abs() * p.scale;
             assert!(off < 1e-6 * (1.0 + (by_difference * p.scale).abs()), "{} of state {j}: {off:e}", p.name);
-            seen += usize::from(by_difference != 0.0 && p.name.contains("port."));
+            seen += usize::from(by_difference != 0.0 && p.name.contains(of));
         }
     }
-    assert!(seen > 10, "{seen} slopes of the port azimuth");
+    seen
+}
+
+#[test]
+fn a_propeller_with_a_rudder_behind_it_is_that_of_the_standard_method() {
+    let hull = "lpp = 5.0\nbreadth = 2.8\ndraught = 0.5\nblock_coefficient = 0.6\nmass = 4300.0\n";
+    let single = format!(
+        "name = \"a\"\n[hull]\n{hull}x_g = 0.1\n[propeller]\ndiameter = 0.4\nx = -2.2\nwake = 0.25\nthrust_deduction = 0.15\n\
+         thrust_coefficients = [0.34, -0.24, -0.19]\n[rudder]\narea = 0.12\nspan = 0.45\nx = -2.4\nstraightening = 0.45\n\
+         lever = -0.816\nwake_ratio = 1.05\nrace = 0.5\n"
+    );
+    let named = format!(
+        "name = \"a\"\n[hull]\n{hull}[[actuator]]\nname = \"screw\"\nx = -2.2\nangle = 0\nlaw = \"propeller\"\ndiameter = 0.4\n\
+         wake = 0.25\nthrust_deduction = 0.15\nthrust_coefficients = [0.34, -0.24, -0.19]\n[[actuator]]\nname = \"blade\"\nx = -2.4\n\
+         law = \"foil\"\narea = 0.12\nspan = 0.45\nbehind = \"screw\"\n"
+    );
+    let parse = |text: &str, form| {
+        let ship = Ship::parse(text, Path::new("ship.toml")).unwrap();
+        Model::new(ship, "m", form, &[]).unwrap()
+    };
+    let (mut single, named) = (parse(&single, Form::Mmg), parse(&named, Form::General));
+    single.set(&[("mmg_wake.C_1", 0.0)]).unwrap();
+    let mut compared = 0;
+    // Attached flow: the standard method has no flat plate beyond it.
+    for u in [-0.8, 0.0, 0.5, 1.4] {
+        for (n, delta, r) in [(6.0, 0.3, 0.05), (-5.0, -0.4, 0.0), (0.0, 0.5, 0.0), (3.0, 0.0, 0.02)] {
+            if (u, n) == (0.0, 0.0) || n * u < 0.0 {
+                continue;
+            }
+            let state = State::from_array([0.0, 0.0, 0.0, u, 0.0, r]);
+            let mut inputs = Inputs::actuators(0.0, n, delta);
+            inputs.commands[..2].copy_from_slice(&[n, delta]);
+            let of = |model: &Model, name: &str| {
+                let all = Dynamics::new(model, model.values()).contributions(&state, &inputs);
+                all.into_iter().find(|(own, _)| *own == name).unwrap().1.to_array()
+            };
+            for (a, b) in [("propeller", "screw"), ("mmg_rudder", "blade")] {
+                let (wanted, found) = (of(&single, a), of(&named, b));
+                for (wanted, found) in wanted.iter().zip(found) {
+                    assert!((wanted - found).abs() < 1e-9 * (1.0 + wanted.abs()), "{b} {u} {n}: {wanted} {found}");
+                    compared += usize::from(*wanted != 0.0);
+                }
+            }
+        }
+    }
+    assert!(compared > 40, "{compared}");
+}
+
+#[test]
+fn a_dead_propeller_leaves_its_rudder_the_stream_alone() {
+    let mut model = model(TWIN, Form::General);
+    let state = State::from_array([0.0, 0.0, 0.0, 1.2, 0.0, 0.0]);
+    let rudder = |model: &Model| {
+        let all = Dynamics::new(model, model.values()).contributions(&state, &commanded(TURNED));
+        all.into_iter().find(|(own, _)| *own == "port_rudder").unwrap().1.to_array()
+    };
+    let raced = rudder(&model);
+    model.set(&[("port_screw.lost", 1.0)]).unwrap();
+    let dead = rudder(&model);
+    // Turned to starboard, aft: to port, and the bow to starboard.
+    assert!(raced[1] < 1.5 * dead[1] && dead[1] < 0.0 && raced[2] > 0.0, "{raced:?} {dead:?}");
 }
 
 #[test]

@@ -144,14 +144,15 @@ impl Basin<'_> {
         let samples = (duration / self.step).round().min(1e9) as usize + 1;
         let name = format!("{} at {speed:.2} m/s", if accelerates { "acceleration" } else { "straight" });
         self.counted(&name, samples)?;
-        let inputs = (0..samples).map(|k| Inputs::actuators(k as f64 * self.step, approach.n, 0.0)).collect();
+        let inputs =
+            (0..samples).map(|k| self.model.ship.inputs_ordered(k as f64 * self.step, approach.n, 0.0)).collect();
         Ok(Ordered { name, inputs, speed, complete: true })
     }
 
     /// The actuators of a track at the sample period.
     fn sampled(&self, track: &Track, approach: &Approach) -> Vec<Inputs<f64>> {
         let every = (self.step / approach.step).round().max(1.0) as usize;
-        let at = |k: usize| Inputs::actuators(track.t[k], track.n[k], track.delta[k]);
+        let at = |k: usize| self.model.ship.inputs_ordered(track.t[k], track.n[k], track.delta[k]);
         (0..track.len()).step_by(every).map(at).collect()
     }
 

@@ -5,7 +5,7 @@ use super::error::ManeuverError;
 use crate::dynamics::Dynamics;
 use crate::model::Model;
 use crate::ranges::{Limited, OutOfRange, within};
-use crate::state::{Force, Inputs, STATES, State};
+use crate::state::{Force, STATES, State};
 use crate::units::GRAVITY;
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
@@ -130,7 +130,7 @@ impl ManeuverSettings {
     /// [`ManeuverError`]: a craft without propeller or rudder, an impossible setting, or no balance between thrust and resistance.
     pub fn approach(&self, model: &Model, theta: &[f64]) -> Result<Approach, ManeuverError> {
         self.limits()?;
-        let missing = match (model.ship.has_propeller(), model.ship.has_rudder()) {
+        let missing = match (model.ship.is_driven(), model.ship.is_steered()) {
             (true, true) => None,
             (false, false) => Some("propeller and no rudder"),
             (false, true) => Some("propeller"),
@@ -224,14 +224,14 @@ fn to_radians(pair: &[f64; 2]) -> [f64; 2] {
 fn surge(model: &Model, theta: &[f64], u: f64, n: f64) -> f64 {
     let state = State::from_array([0.0, 0.0, 0.0, u, 0.0, 0.0]);
     let dynamics = Dynamics::new(model, theta.to_vec());
-    let rates: [f64; STATES] = dynamics.rates(&state, &Inputs::actuators(0.0, n, 0.0), &Force::zero()).0;
+    let rates: [f64; STATES] = dynamics.rates(&state, &model.ship.inputs_ordered(0.0, n, 0.0), &Force::zero()).0;
     rates[3]
 }
 
 /// The propeller rate \[rps\] that holds a speed ahead \[m/s\]: zero surge acceleration at v = r = delta = 0.
 fn balanced_rate(model: &Model, theta: &[f64], speed: f64) -> Result<f64, ManeuverError> {
     // Ten times the rate of no slip is beyond any propeller.
-    let limit = 10.0 * speed / model.ship.propeller.diameter;
+    let limit = 10.0 * speed / model.ship.screw_diameter();
     first_root(|n| surge(model, theta, speed, n), 0.0, limit, 1.0).ok_or(ManeuverError::NoRate { speed, limit })
 }
 

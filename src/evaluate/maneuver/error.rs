@@ -12,7 +12,7 @@ pub enum ManeuverError {
     Setting(#[from] OutOfRange),
     /// The trial is steered by a rudder and driven by a propeller, and the craft has one of them at most.
     #[error(
-        "the ship file has no {missing}, and trials are sailed with the propeller of the channel `n` and the rudder of the channel `delta`; `trimtab simulate` sails recorded orders of named actuators"
+        "the ship file has no {missing} that trials can be sailed with: `[propeller]` or an actuator of law `propeller` or `thruster` along the keel, and `[rudder]` or aft of midship a `foil` or a thruster that turns; `trimtab simulate` sails recorded orders of other actuators"
     )]
     NoDrive {
         /// What there is not: `propeller`, `rudder`, or both.

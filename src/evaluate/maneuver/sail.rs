@@ -48,7 +48,7 @@ pub(super) fn sail_for(
 
     let mut orders = Orders { delta: 0.0, n: approach.n };
     let mut actuators: Vec<Inputs<f64>> =
-        (0..=steps).map(|k| Inputs::actuators(k as f64 * dt, approach.n, 0.0)).collect();
+        (0..=steps).map(|k| model.ship.inputs_ordered(k as f64 * dt, approach.n, 0.0)).collect();
     let mut series = driven(&dynamics, integration, dt, &actuators).into_owned();
 
     let mut track = Track::default();
@@ -64,8 +64,9 @@ pub(super) fn sail_for(
         if new != orders {
             orders = new;
             for i in k + 1..=steps {
-                actuators[i].delta = follow(actuators[i - 1].delta, orders.delta, approach.rudder_rate * dt);
-                actuators[i].n = follow(actuators[i - 1].n, orders.n, approach.engine_rate * dt);
+                let delta = follow(actuators[i - 1].delta, orders.delta, approach.rudder_rate * dt);
+                let n = follow(actuators[i - 1].n, orders.n, approach.engine_rate * dt);
+                actuators[i] = model.ship.inputs_ordered(i as f64 * dt, n, delta);
             }
             series = driven(&dynamics, integration, dt, &actuators).into_owned();
         }

@@ -290,15 +290,17 @@ fn nonlinear<P: Plain>(
     out: &mut [[P; 3]],
 ) {
     let mut p = [P::zero().few(); MOST_PARAMETERS];
-    let p = &mut p[..owned.term.len];
-    for (p, value) in p.iter_mut().zip(owned.term.part(dynamics.theta())) {
+    let read = owned.term.part(dynamics.theta());
+    let p = &mut p[..read.len()];
+    for (p, value) in p.iter_mut().zip(read) {
         *p = value.few();
     }
+    let own = &mut p[owned.term.before..];
     for (lane, (j, _, scale)) in owned.columns.iter().enumerate() {
         // A parameter may have more than one column: each has a lane of its own.
-        let (value, mut slopes) = P::parts(&p[*j]);
+        let (value, mut slopes) = P::parts(&own[*j]);
         slopes[lane] = P::from_f64(*scale);
-        p[*j] = value.few_with(slopes);
+        own[*j] = value.few_with(slopes);
     }
     let state = State::from_array(at.state.to_array().map(P::few));
     let inputs = at.inputs.map(P::few);

@@ -1,20 +1,25 @@
-//! The force of a named actuator of the ship file: forces as logged, an order, or a thruster in its own inflow; and its faults, which a
-//! diagnosis may name. There is a term for each actuator, by its name, and none in the list of all terms: a craft brings its own. The
+//! The force of a named actuator of the ship file: forces as logged, an order, a thruster or a propeller in its own inflow, a rudder; and
+//! its faults, which a diagnosis may name. There is a term for each actuator, by its name, and none in the list of all terms: a craft brings its own. The
 //! paper's propeller and rudder are the terms `flow`, `propeller` and `rudder`, with faults in terms of their own.
 //!
 //! The faults are the same for every law, and none is at its default:
 //! - `lost` \[-\], loss of effectiveness: `F -> (1 - k_l) F`; 1 where the actuator is dead, 2 where it pushes the other way.
 //! - `lag` \[s\], a first-order lag between channel and force: `tau c' = c_o - c`, exact for a channel that is linear between samples.
-//! - `zero` \[rad\], an offset of its direction, positive clockwise from above: `a -> a + a_0`. Logged forces have no direction.
+//! - `zero` \[rad\], an offset of its direction, positive clockwise from above, or of the angle of a rudder: `a -> a + a_0`. Logged forces
+//!   have no direction.
 //! - `swap` \[-\], of two actuators in each other's mirror place, a parameter of the first: `c -> c + s (c_m - c)`, `c_m -> c_m + s (c - c_m)` for every
 //!   channel c of the one and c_m of the other, before any lag; 1 where the recordings of the two are exchanged.
 
+use super::screw::{self, Screw};
 use crate::parameter::ParameterInfo;
-use crate::physics::{AnyTerm, Flow, Group, Instant, Kind, Mechanism, Physics, Probe, Reach, Term, TermInfo, Validity};
+use crate::physics::{
+    AnyTerm, Flow, Group, Instant, Kind, MOST_PARAMETERS, Mechanism, Physics, Probe, Reach, Term, TermInfo, Validity,
+};
 use crate::ship::Ship;
 use crate::ship::actuator::{Actuator, Component, Drive, Lag, Law, MOST_LAG, channels, pairs};
 use crate::state::{Force, Inputs};
 use crate::terms::size;
+use crate::terms::steering::foil::{self, Foil, Upstream};
 use crate::terms::steering::rudder_lag::first_order;
 use std::collections::BTreeMap;
 use std::sync::{LazyLock, Mutex, PoisonError};
@@ -24,12 +29,11 @@ use trimtab_ad::Scalar;
 #[derive(Debug)]
 pub struct ActuatorTerm {
     info: &'static TermInfo,
-    law: Law,
+    push: Push,
     /// Place \[m\], forward and to starboard of midship.
     place: [f64; 2],
     /// Its direction where that is fixed \[rad\].
     fixed: Option<f64>,
-    components: Vec<Component>,
     /// Index of its first channel among the commands.
     slot: usize,
     /// How many channels it has.
@@ -40,6 +44,20 @@ pub struct ActuatorTerm {
     partner: Option<usize>,
     /// Index of its lag among its parameters, behind that of the zero of its direction where it has one.
     lag: usize,
+    /// How many parameters lie between those of the propeller in whose race it stands, these included, and its own.
+    before: usize,
+    /// Whether a rudder stands in its race.
+    is_ahead_of_rudder: bool,
+}
+
+/// What it pushes with.
+#[derive(Debug)]
+enum Push {
+    Logged(Vec<Component>),
+    Order,
+    Thruster,
+    Propeller(Screw),
+    Foil(Foil),
 }
 
 impl ActuatorTerm {
@@ -140,6 +158,18 @@ struct Partner<'a> {
     slot: usize,
 }
 
+/// An actuator of a craft, and the others that it has to do with.
+struct Fitted<'a> {
+    own: &'a Actuator,
+    /// Index of its first channel among the commands.
+    slot: usize,
+    partner: Option<Partner<'a>>,
+    /// The propeller in whose race it stands, the first channel of that among the commands, and how many parameters lie between those
+    /// of the propeller, these included, and its own.
+    behind: Option<(&'a Actuator, usize, usize)>,
+    is_ahead_of_rudder: bool,
+}
+
 /// The terms of the named actuators of a craft, in the order of the ship file.
 pub fn terms(ship: &Ship) -> Vec<&'static dyn AnyTerm> {
     let all = &ship.actuators;
@@ -149,15 +179,27 @@ pub fn terms(ship: &Ship) -> Vec<&'static dyn AnyTerm> {
         let [_, j] = pairs.iter().find(|[first, _]| *first == i)?;
         Some(Partner { name: &all[*j].name, slot: first(*j) })
     };
-    all.iter().enumerate().map(|(i, a)| term(a, first(i), partner(i)) as &dyn AnyTerm).collect()
+    let has_partner = |i: usize| pairs.iter().any(|[first, _]| *first == i);
+    let behind = |i: usize| {
+        let ahead = all[i].behind.as_ref()?;
+        let j = all[..i].iter().position(|other| other.name == *ahead)?;
+        let between = (j..i).map(|k| parameters(&all[k], has_partner(k)).len()).sum();
+        Some((&all[j], first(j), between))
+    };
+    let fitted = |(i, own): (usize, &'_ Actuator)| {
+        let is_ahead_of_rudder = all.iter().any(|other| other.behind.as_ref() == Some(&own.name));
+        term(&Fitted { own: &all[i], slot: first(i), partner: partner(i), behind: behind(i), is_ahead_of_rudder })
+    };
+    all.iter().enumerate().map(|a| fitted(a) as &dyn AnyTerm).collect()
 }
 
-/// The term of an actuator whose first channel is that `slot` of the commands.
-fn term(actuator: &Actuator, slot: usize, partner: Option<Partner>) -> &'static ActuatorTerm {
-    let beside = partner.as_ref().map(|p| (p.name, p.slot));
-    let key = format!("{slot} {actuator:?} {beside:?}");
+/// The term of an actuator, made once.
+fn term(fitted: &Fitted<'_>) -> &'static ActuatorTerm {
+    let beside = fitted.partner.as_ref().map(|p| (p.name, p.slot));
+    let Fitted { own, slot, behind, is_ahead_of_rudder, .. } = fitted;
+    let key = format!("{slot} {own:?} {beside:?} {behind:?} {is_ahead_of_rudder}");
     let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
-    made.entry(key).or_insert_with(|| Box::leak(Box::new(ActuatorTerm::new(actuator, slot, partner))))
+    made.entry(key).or_insert_with(|| Box::leak(Box::new(ActuatorTerm::new(fitted))))
 }
 
 /// A text that is kept for good.
@@ -230,6 +272,19 @@ fn words(law: Law) -> (&'static str, &'static str, &'static str) {
              N = x Y - y X; tau n' = n_c - n",
             "thrust bilinear in rate and inflow: Blanke 1981; Fossen 2011, Handbook of Marine Craft Hydrodynamics and Motion Control, section 12.3",
         ),
+        Law::Propeller => (
+            "propeller",
+            "T = rho n^2 D^4 K_T(J), K_T = k0 + k1 J + k2 J^2, J = (1-w) u_a/(n D), four quadrants, u_a = (u - y r) cos a + (v + x r) sin a; \
+             (1 - t) T along its direction a where T > 0; N = x Y - y X; tau n' = n_c - n",
+            "Yasukawa & Yoshimura 2015, J. Mar. Sci. Technol. 20, eq. 11 to 14; four quadrants as in `flow`; start values where the ship file gives none: B4-70 with P/D = 0.8, wake by Taylor (Lewis 1988, Principles of Naval Architecture II, p. 159)",
+        ),
+        Law::Foil => (
+            "rudder",
+            "F_N = 1/2 rho A U_R^2 f_alpha sin(delta - atan2(v_R, u_R)), f_alpha to a flat plate's from 45 to 60 deg; X = -(1 - t_R) F_N sin delta, \
+             Y = -(1 + a_H) F_N cos delta, N = -(x + a_H x_H' L) F_N cos delta - y X; v_R = -gamma (v + l_R r), u_R = eps (u - y r) or in the \
+             race of a propeller as in `flow`; tau delta' = delta_c - delta",
+            "Yasukawa & Yoshimura 2015, J. Mar. Sci. Technol. 20, eq. 19 to 26; start values: slope by Fujii & Tsuda 1961, in a race t_R = 0.45 - 0.28 C_b, a_H = 0.627 C_b - 0.153",
+        ),
     }
 }
 
@@ -239,6 +294,9 @@ fn parameters(actuator: &Actuator, has_partner: bool) -> Vec<ParameterInfo> {
         Law::Force => actuator.components().iter().map(|c| GAINS[*c as usize]).collect(),
         Law::Order => vec![ORDER],
         Law::Thruster => vec![THRUST, LOSS, ASTERN],
+        Law::Propeller => screw::PARAMETERS.to_vec(),
+        Law::Foil if actuator.behind.is_some() => [foil::PARAMETERS.as_slice(), &foil::IN_RACE].concat(),
+        Law::Foil => foil::PARAMETERS.to_vec(),
     };
     parameters.extend((actuator.law != Law::Force).then_some(ZERO));
     parameters.push(if matches!(actuator.lag, Some(Lag::Word(_))) { FREE_LAG } else { LAG });
@@ -248,18 +306,44 @@ fn parameters(actuator: &Actuator, has_partner: bool) -> Vec<ParameterInfo> {
 }
 
 impl ActuatorTerm {
-    fn new(actuator: &Actuator, slot: usize, partner: Option<Partner>) -> Self {
+    fn new(fitted: &Fitted<'_>) -> Self {
+        let Fitted { own: actuator, slot, partner, behind, is_ahead_of_rudder } = fitted;
         let (title, equation, source) = words(actuator.law);
         let drives = actuator.drives();
         let parameters = parameters(actuator, partner.is_some());
         let lag = parameters.iter().position(|p| p.name == LAG.name).unwrap_or_default();
         let mechanisms = faults(actuator, &parameters, partner.as_ref());
+        let place = [actuator.x, actuator.y];
+        let screw = |of: &Actuator, rate| Screw { diameter: of.diameter.unwrap_or(1.0), place: [of.x, of.y], rate };
+        let upstream = |(ahead, rate, _): &(&Actuator, usize, usize)| {
+            let own = self::parameters(ahead, false);
+            let index = |name| own.iter().position(|p| p.name == name).unwrap_or_default();
+            Upstream {
+                screw: screw(ahead, *rate),
+                axis: ahead.angle.unwrap_or(0.0).to_radians().sin_cos().into(),
+                zero: index(ZERO.name),
+                lost: index(LOST.name),
+            }
+        };
+        let push = match actuator.law {
+            Law::Force => Push::Logged(actuator.components()),
+            Law::Order => Push::Order,
+            Law::Thruster => Push::Thruster,
+            Law::Propeller => Push::Propeller(screw(actuator, *slot)),
+            Law::Foil => Push::Foil(Foil {
+                area: actuator.area.unwrap_or(0.0),
+                span: actuator.blade_span(),
+                place,
+                angle: *slot,
+                behind: behind.as_ref().map(upstream),
+            }),
+        };
         let needs: Vec<&'static str> =
             drives.iter().map(|d| leaked(format!("{}.{}", actuator.name, d.suffix()))).collect();
         let info = TermInfo {
             name: leaked(actuator.name.clone()),
             title,
-            group: Group::Propulsion,
+            group: if actuator.law == Law::Foil { Group::Rudder } else { Group::Propulsion },
             equation: leaked(format!("{equation}; {FAULTY}")),
             source: leaked(format!(
                 "{source}; loss of effectiveness: Blanke et al. 2016, Diagnosis and Fault-Tolerant Control"
@@ -271,22 +355,28 @@ impl ActuatorTerm {
         };
         Self {
             info: Box::leak(Box::new(info)),
-            law: actuator.law,
-            place: [actuator.x, actuator.y],
+            push,
+            place,
             fixed: actuator.angle.map(f64::to_radians),
-            components: actuator.components(),
-            slot,
+            slot: *slot,
             channels: drives.len(),
-            lagged: drives.iter().filter(|d| **d != Drive::Angle).count(),
-            partner: partner.map(|p| p.slot),
+            // The angle of a rudder is what its steering gear turns; that of a thruster is recorded as it is.
+            lagged: drives.iter().filter(|d| **d != Drive::Angle || actuator.law == Law::Foil).count(),
+            partner: partner.as_ref().map(|p| p.slot),
             lag,
+            before: behind.map_or(0, |(_, _, between)| between),
+            is_ahead_of_rudder: *is_ahead_of_rudder,
         }
     }
 
     /// Whether a parameter is free in a model that says nothing of it: gains, which no particulars give, and a lag that is to be
     /// estimated.
     pub fn free_at_first(actuator: &Actuator, parameter: &str) -> bool {
-        parameter.starts_with("gain") || parameter == "lag" && matches!(actuator.lag, Some(Lag::Word(_)))
+        match parameter {
+            "lag" => matches!(actuator.lag, Some(Lag::Word(_))),
+            "slope" => actuator.law == Law::Foil,
+            gain => gain.starts_with("gain"),
+        }
     }
 
     /// Sine and cosine of the direction in which it pushes.
@@ -307,12 +397,20 @@ impl Term for ActuatorTerm {
     }
 
     fn reach(&self, parameter: usize) -> Reach {
-        if parameter == self.lag || parameter == self.swap() { Reach::Anything } else { Reach::Force }
+        let drives = parameter == self.lag || parameter == self.swap();
+        let in_race = self.is_ahead_of_rudder && screw::is_in_race(parameter);
+        let has_no_room = self.before + self.info.parameters.len() > MOST_PARAMETERS;
+        if drives || in_race || has_no_room { Reach::Anything } else { Reach::Force }
+    }
+
+    fn before(&self) -> usize {
+        self.before
     }
 }
 
 impl<S: Scalar> Physics<S> for ActuatorTerm {
     fn drive(&self, p: &[S], _ship: &Ship, dt: f64, series: &mut [Inputs<S>]) {
+        let p = &p[self.before..];
         if let Some(partner) = self.partner {
             for commands in series.iter_mut().map(|inputs| &mut inputs.commands) {
                 for (own, other) in (self.slot..).zip(partner..).take(self.channels) {
@@ -328,32 +426,41 @@ impl<S: Scalar> Physics<S> for ActuatorTerm {
     }
 
     fn force(&self, p: &[S::Coefficient], at: &Instant<S>, flow: &Flow<S>) -> Force<S> {
+        let (upstream, p) = p.split_at(self.before);
         let command = |i: usize| at.inputs.commands[self.slot + i];
         let [x, y] = self.place;
         let left = S::Coefficient::one() - p[self.lost()];
-        if self.law == Law::Force {
-            let mut force = Force::<S::Coefficient>::zero();
-            for (i, component) in self.components.iter().enumerate() {
-                let pushed = p[i] * command(i) * left;
-                match component {
-                    Component::X => force.x = pushed,
-                    Component::Y => force.y = pushed,
-                    Component::N => force.n = pushed,
+        let direction = || self.direction(p, at.inputs);
+        let (thrust, [sin, cos]) = match &self.push {
+            Push::Logged(components) => {
+                let mut force = Force::<S::Coefficient>::zero();
+                for (i, component) in components.iter().enumerate() {
+                    let pushed = p[i] * command(i) * left;
+                    match component {
+                        Component::X => force.x = pushed,
+                        Component::Y => force.y = pushed,
+                        Component::N => force.n = pushed,
+                    }
                 }
+                let n = force.n + force.y * x - force.x * y;
+                return Force { x: S::lift(force.x), y: S::lift(force.y), n: S::lift(n) };
             }
-            let n = force.n + force.y * x - force.x * y;
-            return Force { x: S::lift(force.x), y: S::lift(force.y), n: S::lift(n) };
-        }
-        let [sin, cos] = self.direction(p, at.inputs);
-        let thrust = if self.law == Law::Order {
-            S::lift(p[0] * command(0) * left)
-        } else {
-            let n = command(0);
-            let (zero, one) = (S::Coefficient::zero(), S::Coefficient::one());
-            let ahead = p[0] * left;
-            let gain = ahead * S::Coefficient::select(n.less(zero), p[2], one);
-            let inflow = (flow.u - flow.r * y) * cos + (flow.v + flow.r * x) * sin;
-            S::lift(gain * n * n.abs()) - inflow * (ahead * p[1] * n.abs())
+            Push::Foil(blade) => return blade.force(p, upstream, [p[self.lag - 1], left], at, flow),
+            Push::Order => (S::lift(p[0] * command(0) * left), direction()),
+            Push::Thruster => {
+                let [sin, cos] = direction();
+                let n = command(0);
+                let (zero, one) = (S::Coefficient::zero(), S::Coefficient::one());
+                let ahead = p[0] * left;
+                let gain = ahead * S::Coefficient::select(n.less(zero), p[2], one);
+                let inflow = (flow.u - flow.r * y) * cos + (flow.v + flow.r * x) * sin;
+                (S::lift(gain * n * n.abs()) - inflow * (ahead * p[1] * n.abs()), [sin, cos])
+            }
+            Push::Propeller(screw) => {
+                let axis = direction();
+                let [_, thrust] = screw.advance_and_thrust(p, axis, left, at, flow);
+                (Screw::net(p, thrust), axis)
+            }
         };
         let (along, aside) = (thrust * cos, thrust * sin);
         Force { x: along, y: aside, n: aside * x - along * y }

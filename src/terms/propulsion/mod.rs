@@ -7,5 +7,6 @@ pub mod mmg_wake;
 pub mod propeller;
 pub mod propeller_walk;
 pub mod rate_gain;
+pub(in crate::terms) mod screw;
 pub mod thrust_loss;
 pub mod wake_drift;

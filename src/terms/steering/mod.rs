@@ -1,5 +1,6 @@
 //! Rudders and their gear.
 
+pub(in crate::terms) mod foil;
 pub mod mmg_rudder;
 pub mod race;
 pub mod rudder;

@@ -18,7 +18,10 @@ const PLACES: [&[&str]; 6] = [
 /// Words that say what a channel is, and not of which actuator.
 const KINDS: [(&[&str], Option<Quantity>); 5] = [
     (&["n", "rpm", "rps", "rate", "speed", "revs", "rev", "omega"], Some(Quantity::Rotation)),
-    (&["azi", "azimuth", "angle", "alpha", "direction", "steering"], Some(Quantity::Angle)),
+    (
+        &["azi", "azimuth", "angle", "alpha", "direction", "steering", "rudder", "delta", "helm", "rsa"],
+        Some(Quantity::Angle),
+    ),
     (&["u", "cmd", "command", "order", "throttle", "pwm", "pitch", "duty"], Some(Quantity::Number)),
     (&["force", "thrust", "tau", "fx", "fy", "x", "y"], Some(Quantity::Force)),
     (
@@ -55,14 +58,26 @@ fn parts(name: &str) -> BTreeSet<String> {
     words(&apart).into_iter().map(usual).collect()
 }
 
+/// Which words of an actuator's name a column must have.
+#[derive(Clone, Copy, PartialEq)]
+enum Asked {
+    /// All of them: `thruster_1` is `Thruster 1`.
+    All,
+    /// Those that do not say what it is: `azi_1` is `n1`, `a1` and `Motor 1`.
+    Distinguishing,
+}
+
 /// Whether a column drives this channel, by their names and the unit that the file gives.
-fn drives(channel: Channel, column: &str, unit: Option<&str>) -> bool {
+fn drives(channel: Channel, column: &str, unit: Option<&str>, asked: Asked) -> bool {
     let quantity = channel.info().quantity;
     let (actuator, _) = channel.name().split_once('.').unwrap_or((channel.name(), ""));
-    let (wanted, mut found) = (parts(actuator), parts(column));
+    let (mut wanted, mut found) = (parts(actuator), parts(column));
     let said: Vec<Quantity> =
         found.iter().filter_map(|w| KINDS.iter().find(|(k, _)| k.contains(&w.as_str()))?.1).collect();
     let kind = |word: &String| KINDS.iter().any(|(kinds, _)| kinds.contains(&word.as_str()));
+    if asked == Asked::Distinguishing {
+        wanted.retain(|word| !kind(word));
+    }
     found.retain(|word| wanted.contains(word) || !kind(word));
     let fits = unit.is_none_or(|unit| quantity.factor(unit).is_some());
     // A column that says nothing of its kind is the rate or the order, which every actuator has one of.
@@ -71,16 +86,24 @@ fn drives(channel: Channel, column: &str, unit: Option<&str>) -> bool {
     !wanted.is_empty() && wanted == found && fits && alike
 }
 
-/// The column of each of these channels, where one column alone has its name and it is the name of no other of them.
+/// The column of each of these channels, where one column alone has its name and it is the name of no other of them: first by all words
+/// of the names, then, of what is left, by those that tell one actuator from another.
 pub fn by_names(columns: &[(&str, Option<&str>)], channels: &[Channel]) -> BTreeMap<String, Channel> {
-    let of = |channel: Channel| columns.iter().filter(move |(name, unit)| drives(channel, name, *unit));
-    let alone = |channel: &Channel| {
-        let mut fitting = of(*channel);
-        let (first, second) = (fitting.next()?, fitting.next());
-        let others = channels.iter().filter(|other| *other != channel && of(**other).any(|c| c.0 == first.0)).count();
-        (second.is_none() && others == 0).then(|| (first.0.to_owned(), *channel))
-    };
-    channels.iter().filter_map(alone).collect()
+    let mut named: BTreeMap<String, Channel> = BTreeMap::new();
+    for asked in [Asked::All, Asked::Distinguishing] {
+        let left: Vec<Channel> = channels.iter().filter(|c| !named.values().any(|n| n == *c)).copied().collect();
+        let free: Vec<_> = columns.iter().filter(|(name, _)| !named.contains_key(*name)).collect();
+        let of = |channel: Channel| free.iter().filter(move |(name, unit)| drives(channel, name, *unit, asked));
+        let alone = |channel: &Channel| {
+            let mut fitting = of(*channel);
+            let (first, second) = (fitting.next()?, fitting.next());
+            let is_of = |other: &&Channel| *other != channel && of(**other).any(|c| c.0 == first.0);
+            (second.is_none() && !left.iter().any(|other| is_of(&other))).then(|| (first.0.to_owned(), *channel))
+        };
+        let found: Vec<_> = left.iter().filter_map(alone).collect();
+        named.extend(found);
+    }
+    named
 }
 
 #[cfg(test)]
@@ -105,9 +128,30 @@ mod tests {
         let found = found(&columns, &channels);
         assert_eq!(found["thr_left"], "port.order");
         assert_eq!(found["Thruster right"], "starboard.order");
-        assert_eq!(found.len(), 2, "{found:?}");
+        assert_eq!((found["n1"].as_str(), found["azi_1"].as_str(), found.len()), ("pod1.rate", "pod1.angle", 4));
         let numbered = self::found(&columns, &["thruster_1.rate", "thruster_1.angle"]);
-        assert!(numbered.is_empty(), "{numbered:?}");
+        assert_eq!((numbered["n1"].as_str(), numbered["azi_1"].as_str()), ("thruster_1.rate", "thruster_1.angle"));
+    }
+
+    #[test]
+    fn the_rudders_of_twin_screws_are_found_by_their_sides() {
+        let columns =
+            [("Rudder port", Some("deg")), ("rudder_stbd", Some("deg")), ("rpm_port", Some("rpm")), ("RPM stbd", None)];
+        let found = found(
+            &columns,
+            &["port_screw.rate", "starboard_screw.rate", "port_rudder.angle", "starboard_rudder.angle"],
+        );
+        let of = |column: &str| found[column].as_str();
+        assert_eq!([of("rpm_port"), of("RPM stbd")], ["port_screw.rate", "starboard_screw.rate"]);
+        assert_eq!([of("Rudder port"), of("rudder_stbd")], ["port_rudder.angle", "starboard_rudder.angle"]);
+    }
+
+    #[test]
+    fn all_words_of_a_name_count_before_those_that_tell_one_from_another() {
+        let columns = [("thruster_1", Some("rpm")), ("n1", Some("rpm")), ("pod_1", Some("rpm"))];
+        let found = found(&columns, &["thruster_1.rate", "pod_1.rate"]);
+        assert_eq!((found["thruster_1"].as_str(), found["pod_1"].as_str()), ("thruster_1.rate", "pod_1.rate"));
+        assert_eq!(found.len(), 2, "{found:?}");
     }
 
     #[test]
