@@ -360,10 +360,79 @@ fn shallow_water_widens_the_circle_and_a_depth_that_is_less_than_the_ship_needs_
 }
 
 #[test]
-fn a_craft_without_propeller_and_rudder_sails_no_trial_and_the_error_says_what_it_lacks() {
+fn a_craft_without_anything_to_steer_with_sails_no_trial_and_the_error_says_what_it_lacks() {
     let text = "name = \"cat\"\n[hull]\nlpp = 1.2\nbreadth = 0.9\nmass = 17.0\n[[actuator]]\nname = \"left\"\nx = -0.4\ny = -0.3\nangle = 0\n\
                 law = \"thruster\"\n";
     let model = Model::new(Ship::parse(text, Path::new("ship.toml")).unwrap(), "cat", Form::General, &[]).unwrap();
     let error = ManeuverSettings::default().approach(&model, &model.values()).unwrap_err();
-    assert_eq!(error, ManeuverError::NoDrive { missing: "propeller and no rudder" });
+    assert_eq!(error, ManeuverError::NoDrive { missing: "rudder" });
+}
+
+#[test]
+fn twin_screws_with_rudders_and_an_outboard_turn_to_the_side_of_the_order() {
+    let hull = "name = \"boat\"\n[hull]\nlpp = 5.0\nbreadth = 1.8\nmass = 900.0\n";
+    let twin = [("port", -0.5), ("starboard", 0.5)].map(|(side, y)| {
+        format!(
+            "[[actuator]]\nname = \"{side}_screw\"\nx = -2.2\ny = {y}\nangle = 0\nlaw = \"propeller\"\ndiameter = 0.3\n\
+             [[actuator]]\nname = \"{side}_rudder\"\nx = -2.4\ny = {y}\nlaw = \"foil\"\narea = 0.05\nbehind = \"{side}_screw\"\n"
+        )
+    });
+    let outboard = "[[actuator]]\nname = \"outboard\"\nx = -2.4\nlaw = \"thruster\"\n".to_owned();
+    for actuators in [twin.concat(), outboard] {
+        let ship = Ship::parse(&format!("{hull}{actuators}"), Path::new("ship.toml")).unwrap();
+        let model = Model::new(ship, "boat", Form::General, &[]).unwrap();
+        let settings = ManeuverSettings { speed: Some(1.5), ..Default::default() };
+        let approach = settings.approach(&model, &model.values()).unwrap();
+        for (side, sign) in [(Side::Starboard, 1.0), (Side::Port, -1.0)] {
+            let turn = turning_trial(&model, &model.values(), &approach, side, 0.4);
+            let end = turn.track.states.last().unwrap();
+            assert!(end[2] * sign > 3.0 && turn.measures.tactical_diameter.unwrap() > 0.0, "{actuators} {end:?}");
+        }
+    }
+}
+
+/// Ships whose trials are published: type, L, B and d \[m\], approach speed \[m/s\], tactical diameter at 35 deg over L, first overshoot of the
+/// zigzag 10/10 \[deg\]. KVLCC2, KCS, S175 and the 3 m Esso Osaka: free-running models (SIMMAN 2008; Kim, Tezdogan et al. 2021; ITTC 1984; Osaka
+/// University, circles of its recordings); Esso 190 000 dwt: the model of van Berlekom & Goddard 1972, made from full-scale trials.
+const TRIED: [(&str, [f64; 3], f64, f64, Option<f64>); 5] = [
+    ("tanker", [320.0, 58.0, 20.8], 7.97, 3.20, Some(9.8)),
+    ("container", [230.0, 32.2, 10.8], 7.46, 3.16, None),
+    ("tanker", [304.8, 47.17, 18.46], 8.0, 3.08, Some(6.9)),
+    ("container", [175.0, 25.4, 9.5], 6.2, 4.12, None),
+    ("tanker", [3.0, 0.489, 0.201], 0.4, 2.60, None),
+];
+
+#[test]
+fn trials_of_ships_that_are_known_by_their_dimensions_are_near_those_sailed() {
+    let errors = |prime: bool| {
+        let (mut circles, mut overshoots) = (Vec::new(), Vec::new());
+        for (kind, dimensions, speed, diameter, overshoot) in TRIED {
+            let kind = crate::ship::particulars::Kind::find(kind).unwrap();
+            let [l, b, d] = dimensions;
+            let given =
+                format!("name = \"a\"\n[hull]\nlpp = {l:?}\nbreadth = {b:?}\ndraught = {d:?}\n").parse().unwrap();
+            let mut ship = crate::ship::particulars::estimate(kind, &given, None).unwrap().ship;
+            if !prime {
+                ship.coefficients_prime.clear();
+            }
+            let model = Model::new(ship, "a", Form::Regular, &[]).unwrap();
+            let settings = ManeuverSettings { speed: Some(speed), ..Default::default() };
+            let theta = model.values();
+            let approach = settings.approach(&model, &theta).unwrap();
+            let turn = turning_trial(&model, &theta, &approach, Side::Starboard, settings.turning_angle());
+            circles.push((turn.measures.tactical_diameter.unwrap() / l / diameter - 1.0).abs());
+            if let Some(overshoot) = overshoot {
+                let angles = [10_f64.to_radians(); 2];
+                let zigzag = zigzag_trial(&model, &theta, &approach, Side::Starboard, angles);
+                overshoots.push((zigzag.measures.overshoots[0].to_degrees() / overshoot - 1.0).abs());
+            }
+        }
+        [circles, overshoots].map(|mut errors| {
+            errors.sort_by(f64::total_cmp);
+            errors[errors.len() / 2]
+        })
+    };
+    let (ours, clarke) = (errors(true), errors(false));
+    assert!(ours[0] < 0.2 && ours[1] < 0.45, "median errors {ours:?}");
+    assert!(ours[0] < 0.6 * clarke[0] && ours[1] < clarke[1], "{ours:?}, with Clarke's derivatives {clarke:?}");
 }

@@ -9,6 +9,7 @@ use super::sheet::{Sheet, at, number, rounded};
 use super::write::ship_text;
 use crate::ship::{Ship, ShipError};
 use crate::units::GRAVITY;
+use std::f64::consts::PI;
 use std::path::Path;
 use toml::{Table, Value};
 
@@ -41,6 +42,11 @@ const RUDDER: &str = "A_R = L d/100 (1 + 25 (B/L)^2), Det Norske Veritas 1975, t
 const SPAN: &str = "aspect ratio 2.0, at most 0.9 d; usual are 1.2 to 2.2, Molland & Turnock 2007, Marine Rudders and Control Surfaces";
 const MMG: &str = "engineering estimate for a single-screw ship; KVLCC2 has straightening 0.52, lever -0.71, wake_ratio 1.09, race 0.50 (Yasukawa & Yoshimura 2015, J. Mar. Sci. Technol. 20, table 4)";
 const AREAS: &str = "engineering estimate by type, no published regression; used by the wind alone";
+
+const LINEAR: &str = "Wagner Smitt 1971, as tabulated by Clarke, Gedling & Hine 1982: of the published regressions that whose trials are nearest to those of free-running ships (`trimtab help ship`)";
+
+/// The linear derivatives of Wagner Smitt over pi d/L, in the L-d normalisation: they depend on nothing else.
+const WAGNER_SMITT: [(&str, f64); 4] = [("Yv", -1.59), ("Yr", 0.32), ("Nv", -0.62), ("Nr", -0.21)];
 
 const ADDED_SWAY: &str = "-m_y', regression of Motora's charts by Zhou, Sheng & Feng 1983; used for L/B below 4.5, where that of Clarke fails";
 const ADDED_YAW: &str = "-J_zz', regression of Motora's charts by Zhou, Sheng & Feng 1983";
@@ -76,6 +82,7 @@ pub fn estimate(kind: &'static Kind, given: &Table, speed: Option<f64>) -> Resul
     main.rudder(&mut sheet);
     main.above_water(&mut sheet);
     main.added_mass(&mut sheet, &hull);
+    main.derivatives(&mut sheet);
     main.parameters(&mut sheet, &hull);
     sheet.keep_rest();
     let (speed, outside, entries) = (rounded(service, 4), kind.outside(dimensions, main.froude), sheet.entries);
@@ -227,6 +234,21 @@ impl Main {
         ] {
             if !sheet.has(&format!("coefficients.{name}")) {
                 sheet.take(&format!("coefficients_prime.{name}"), value, 0.3 * value.abs(), source);
+            }
+        }
+    }
+
+    /// The linear derivatives of a ship; of a craft shorter than 4.5 breadths, which no ship's model of the regression is, those of
+    /// [`Ship::coefficient`] stay.
+    fn derivatives(&self, sheet: &mut Sheet<'_>) {
+        let [length, breadth, draught] = self.dimensions;
+        if length / breadth < CLARKE_FROM {
+            return;
+        }
+        for (name, factor) in WAGNER_SMITT {
+            if !sheet.has(&format!("coefficients.{name}")) {
+                let value = factor * PI * draught / length;
+                sheet.take(&format!("coefficients_prime.{name}"), value, 0.3 * value.abs(), LINEAR);
             }
         }
     }

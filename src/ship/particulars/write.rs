@@ -14,7 +14,7 @@ const WIDTH: usize = 80;
 pub(super) fn ship_text(kind: &str, speed: f64, outside: &[String], entries: &[Entry]) -> String {
     let mut text = comment(&format!(
         "A ship file of `trimtab new`, type {kind}. Values without \"given\" are estimates for a service speed of {} m/s: put what you know in \
-         their place. Hull coefficients are estimated whenever the file is read (Clarke 1982, Inoue 1981); a table [coefficients] replaces them.",
+         their place. Hull coefficients that are not here are estimated whenever the file is read (Clarke 1982, Inoue 1981); a table [coefficients] replaces them.",
         sig(speed, 4)
     ));
     for sentence in outside {
