@@ -145,3 +145,61 @@ fn every_form_has_the_same_numbers_and_octave_finds_the_same_force() {
         }
     }
 }
+
+const CRAFT: &str = "name = \"cat\"\n[hull]\nlpp = 1.2\nbreadth = 0.9\nmass = 17.0\n\
+    [[actuator]]\nname = \"left\"\nx = -0.4\ny = -0.3\nlaw = \"thruster\"\nangle = 0\n";
+
+#[test]
+fn a_general_hull_is_exported_with_its_own_force_and_its_actuators_and_nothing_of_a_propeller() {
+    let ship = Ship::parse(CRAFT, Path::new("ship.toml")).unwrap();
+    let mut model = Model::new(ship, "cat", Form::General, &[]).unwrap();
+    for (i, p) in model.parameters.iter_mut().enumerate() {
+        if p.name.starts_with("general_hull.") {
+            p.value = (0.3 + 0.1 * (i % 7) as f64) * p.scale;
+        }
+    }
+    model.set(&[("hull.Xudot", -2.0), ("hull.Yvdot", -9.0), ("hull.Nrdot", -0.7), ("hull.x_g", 0.05)]).unwrap();
+    let document = export(&model);
+    let script = document.matlab();
+    let n = assigned(&script);
+    assert_eq!(n["ship.actuators.left.y"], -0.3);
+    assert_eq!(n["ship.actuators.left.loss"], model.parameters[model.index("left.loss").unwrap()].value);
+    assert!(!script.contains("ship.D ") && !script.contains("rudder.lift1") && !script.contains("mmg.Yv"), "{script}");
+    assert_eq!(script.matches('(').count(), script.matches(')').count());
+    // Every name in the function is set above it.
+    let function = &script[script.find("% Hull force").unwrap()..];
+    for (own, table) in [("h.", "ship.hd."), ("g.", "ship.general_hull.")] {
+        for (at, _) in function.match_indices(own) {
+            let before = function[..at].chars().last().unwrap();
+            let name: String = function[at + 2..].chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+            assert!(before.is_alphanumeric() || n.contains_key(&format!("{table}{name}")), "{own}{name}");
+        }
+    }
+    // The equations of the document, with the numbers of the script.
+    let (h, g) = (|name: &str| n[&format!("ship.hd.{name}")], |name: &str| n[&format!("ship.general_hull.{name}")]);
+    let (l, small) = (n["ship.L"], n["ship.small"]);
+    let inputs = Inputs::actuators(0.0, 0.0, 0.0);
+    for [u, v, r] in velocities().into_iter().map(|[u, v, r]| [0.2 * u, 0.2 * v, 20.0 * r]) {
+        let (au, av, ar) = (u.hypot(small), v.hypot(small), r.hypot(small / l));
+        let at = |place: &str, w: f64| {
+            let of = |what: &str| g(&format!("{place}_{what}"));
+            (of("linear") + of("square") * w.hypot(small) + of("lift") * au) * w
+        };
+        let (bow, mid, stern) = (at("bow", v + 0.5 * l * r), at("mid", v), at("stern", v - 0.5 * l * r));
+        let surge = g("surge_linear") + g("surge_square") * au + g("surge_drift") * av + g("surge_turn") * l * ar;
+        let yaw = g("yaw_linear") + g("yaw_square") * ar + g("yaw_lift") * au;
+        let (m, xg) = (h("mass"), h("x_g"));
+        let wanted = [
+            (m - h("Yvdot") + g("turning")) * v * r + m * xg * r * r - surge * u,
+            -(m - h("Xudot") + g("turning") - g("lift")) * u * r - bow - mid - stern,
+            -m * xg * u * r - (h("Xudot") - h("Yvdot") + g("lift")) * u * v - 0.5 * l * (bow - stern) - yaw * r,
+        ];
+        let state = State::from_array([0.0, 0.0, 0.3, u, v, r]);
+        let all = Dynamics::new(&model, model.values()).contributions(&state, &inputs);
+        let own = all.iter().filter(|(name, _)| ["hull", "general_hull", "resistance"].contains(name));
+        let found = own.fold([0.0; 3], |sum, (_, f)| [sum[0] + f.x, sum[1] + f.y, sum[2] + f.n]);
+        for i in 0..3 {
+            assert!((found[i] - wanted[i]).abs() < 1e-9 * (1.0 + wanted[i].abs()), "{i}: {found:?} {wanted:?}");
+        }
+    }
+}

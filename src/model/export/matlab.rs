@@ -31,9 +31,22 @@ impl Export {
         for p in &self.mmg {
             text += &format!("ship.mmg.{} = {:e}; % {}\n", p.name, p.value, p.definition);
         }
-        text += "\n% Resistance, propeller, rudder, flow\n";
+        text += "\n% What else moves the craft and holds it back\n";
         for c in &self.others {
             text += &format!("ship.{} = {:e}; % [{}] {}\n", c.name, c.value, c.unit, c.about);
+        }
+        for a in &self.actuators {
+            let place = format!("ship.actuators.{}", a.name);
+            text += &format!(
+                "\n% {}: {}\n{place}.x = {:e}; % [m]\n{place}.y = {:e}; % [m]\n",
+                a.name, a.equation, a.x, a.y
+            );
+            if let Some(angle) = a.angle {
+                text += &format!("{place}.angle = {angle:e}; % [deg]\n");
+            }
+            for c in &a.parameters {
+                text += &format!("{place}.{} = {:e}; % [{}] {}\n", c.name, c.value, c.unit, c.about);
+            }
         }
         text + &self.hull_force()
     }
@@ -42,6 +55,9 @@ impl Export {
     fn hull_force(&self) -> String {
         if self.equations == super::mmg::EQUATIONS {
             return super::mmg::MATLAB.to_owned();
+        }
+        if self.equations == super::general::EQUATIONS {
+            return super::general::MATLAB.to_owned();
         }
         let regular = self.equations[2].contains("Yv |u| v");
         let (even, odd) = if regular { ("absu(u)", "u") } else { ("U(u,v)", "U(u,v)") };

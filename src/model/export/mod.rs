@@ -1,11 +1,13 @@
 //! A fitted ship in the notation of other programs: its HD coefficients, their primes, and those of the MMG form, with definitions.
 //! It converts and simulates nothing: what a term computes is in [`crate::terms`].
 
+mod general;
 mod matlab;
 mod mmg;
 
 use crate::model::{Model, Parameter};
 use crate::physics::Form;
+use crate::ship::actuator::Actuator;
 use crate::ship::{COEFFICIENTS, Ship};
 use serde::Serialize;
 
@@ -77,8 +79,36 @@ pub struct Export {
     pub hull: Vec<Coefficient>,
     /// Hull in the MMG form.
     pub mmg: Vec<Prime>,
-    /// Resistance, propeller, rudder, and the flow at them, by dotted name.
+    /// Resistance, propeller, rudder, and the flow at them, by dotted name; in form `general` the hull's damping.
     pub others: Vec<Coefficient>,
+    /// The named actuators of the craft.
+    pub actuators: Vec<ExportedActuator>,
+}
+
+/// A named actuator of the craft.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ExportedActuator {
+    /// Its name.
+    pub name: String,
+    /// Place \[m\], forward of midship.
+    pub x: f64,
+    /// Place \[m\], to starboard of the centre line.
+    pub y: f64,
+    /// Direction in which it pushes \[deg\], clockwise from the bow; absent where that is a channel, and where it has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub angle: Option<f64>,
+    /// Its force.
+    pub equation: &'static str,
+    /// Its parameters.
+    pub parameters: Vec<Coefficient>,
+}
+
+impl Coefficient {
+    /// A parameter that has no prime, under a name.
+    fn of(p: &Parameter, name: &str) -> Self {
+        let (unit, about) = (p.info.unit.to_owned(), p.info.about.to_owned());
+        Self { name: name.to_owned(), value: p.value, unit, divided_by: None, prime: None, about }
+    }
 }
 
 const FRAME: &str = "Origin midship; x forward, y to starboard, psi clockwise from north, r > 0 bow to starboard, rudder angle delta > 0 turns the ship to starboard; SI units and radians.";
@@ -87,19 +117,11 @@ const NORMALISATION: &str = "prime = value / (1/2 rho L^a d) for forces over vel
 
 const MMG_NOTE: &str = "MMG form of Yasukawa & Yoshimura 2015 at midship: (m + m_x) u' - (m + m_y) v r - x_G m r^2 = X; (m + m_y) v' + (m + m_x) u r + x_G m r' = Y; (I_z + J_z) r' + x_G m (v' + u r) = N, with I_z about midship. Its Y_r is that of the HD form plus m_x, where u = U; it has no Y_rdot and N_vdot, which are left out; its quadratic coefficients are those of v|v|, v|r|, r|r| and not the cubic ones of that paper.";
 
-/// The equations of motion of form `general`.
-const GENERAL_EQUATIONS: [&str; 4] = [
-    "(m - Xudot) u' = X; (m - Yvdot) v' + m x_g r' = Y; m x_g v' + (inertia - Nrdot) r' = N; the forces of the actuators are added to the right",
-    "X = (m - Yvdot) v r + m x_g r^2 - (surge_linear + surge_square |u| + surge_drift |v| + surge_turn L |r|) u + turning v r",
-    "Y = -(m - Xudot) u r - sum over bow, mid, stern of (linear + square |w| + lift |u|) w + (lift - turning) u r, w = v + x r, x = L/2, 0, -L/2",
-    "N = -m x_g u r - (Xudot - Yvdot) u v - sum of x (linear + square |w| + lift |u|) w - (yaw_linear + yaw_square |r| + yaw_lift |u|) r - lift u v",
-];
-
 /// The equations of motion with U in the linear terms.
 fn equations(form: Form) -> [&'static str; 4] {
     let [y, n] = match form {
         Form::Mmg => return mmg::EQUATIONS,
-        Form::General => return GENERAL_EQUATIONS,
+        Form::General => return general::EQUATIONS,
         Form::Paper => [
             "Y = Yv U v + Yr U r + Yvv v|v| + Yvr v|r| + Yrr r|r| - m u r",
             "N = Nv U v + Nr U r + Nrr r|r| + Nrrv r^2 v/U + Nvvr v^2 r/U - m x_g u r",
@@ -142,21 +164,18 @@ pub fn export(model: &Model) -> Export {
     }
     let prime = |name: &str| hull.iter().find(|c| c.name == name).and_then(|c| c.prime).unwrap_or(0.0);
     let mut primes = converted(&prime);
-    if model.form == Form::Mmg {
+    if matches!(model.form, Form::Mmg | Form::General) {
         primes.truncate(MASSES);
+    }
+    if model.form == Form::Mmg {
         primes.extend(mmg::primes(model).map(|(name, value, definition)| Prime { name, value, definition }));
     }
     let with = ["resistance.", "propeller.", "rudder.", "flow.", "mmg_wake.", "mmg_rudder.", "general_hull."];
     let base = |p: &&Parameter| with.iter().any(|t| p.name.starts_with(t));
-    let unnamed = |p: &&Parameter| !exported(p) && p.value != 0.0;
-    let others = model.parameters.iter().filter(base).filter(exported).map(|p| Coefficient {
-        name: p.name.clone(),
-        value: p.value,
-        unit: p.info.unit.to_owned(),
-        divided_by: None,
-        prime: None,
-        about: p.info.about.to_owned(),
-    });
+    let unnamed = |p: &&Parameter| !exported(p) && p.value != 0.0 && !model.lacks_owner(&p.name);
+    let fitted = |p: &&Parameter| !model.lacks_owner(&p.name);
+    let others =
+        model.parameters.iter().filter(base).filter(exported).filter(fitted).map(|p| Coefficient::of(p, &p.name));
     Export {
         schema: "trimtab-export/1",
         ship: ship.name.clone(),
@@ -164,7 +183,11 @@ pub fn export(model: &Model) -> Export {
         frame: FRAME,
         equations: equations(model.form),
         normalisation: NORMALISATION,
-        mmg_note: if model.form == Form::Mmg { mmg::NOTE } else { MMG_NOTE },
+        mmg_note: match model.form {
+            Form::Mmg => mmg::NOTE,
+            Form::General => general::NOTE,
+            Form::Paper | Form::Regular => MMG_NOTE,
+        },
         left_out: {
             let set = model.parameters.iter().filter(unnamed).map(|p| p.name.clone());
             model.further_terms().iter().map(ToString::to_string).chain(set).collect()
@@ -172,32 +195,53 @@ pub fn export(model: &Model) -> Export {
         particulars: particulars(ship),
         mmg: primes,
         others: others.collect(),
+        actuators: actuators(model),
         hull,
     }
+}
+
+/// The named actuators of the craft with their parameters.
+fn actuators(model: &Model) -> Vec<ExportedActuator> {
+    let of = |a: &Actuator| {
+        let own = format!("{}.", a.name);
+        let parameters = model.parameters.iter().filter(|p| p.name.starts_with(&own));
+        let equation = model.catalogue().find(&a.name).map_or("", |term| term.info().equation);
+        ExportedActuator {
+            name: a.name.clone(),
+            x: a.x,
+            y: a.y,
+            angle: a.angle,
+            equation,
+            parameters: parameters.map(|p| Coefficient::of(p, p.info.name)).collect(),
+        }
+    };
+    model.ship.actuators.iter().map(of).collect()
 }
 
 /// What the coefficients need of the ship.
 fn particulars(ship: &Ship) -> Vec<Particular> {
     let h = &ship.hull;
     let particular = |name, value, unit, about| Particular { name, value, unit, about };
-    vec![
+    let mut all = vec![
         particular("L", h.lpp, "m", "length between perpendiculars"),
         particular("B", h.breadth, "m", "breadth"),
         particular("d", h.draught, "m", "draught"),
         particular("Cb", h.block_coefficient, "-", "block coefficient"),
         particular("rho", h.water_density, "kg/m3", "water density"),
-        particular("D", ship.propeller.diameter, "m", "propeller diameter"),
-        particular("x_P", ship.propeller_x(), "m", "propeller, forward of midship"),
-        particular("A_R", ship.rudder.area, "m2", "rudder area"),
-        particular("H_R", ship.rudder.span, "m", "rudder span"),
-        particular("x_R", ship.rudder_x(), "m", "rudder, forward of midship"),
-        particular(
-            "small",
-            ship.small_speed(),
-            "m/s",
-            "in |u|, |v|, U = sqrt(... + small^2) and |r| = sqrt(r^2 + (small/L)^2), so that they are smooth at rest",
-        ),
-    ]
+    ];
+    if ship.has_propeller() {
+        all.push(particular("D", ship.propeller.diameter, "m", "propeller diameter"));
+        all.push(particular("x_P", ship.propeller_x(), "m", "propeller, forward of midship"));
+    }
+    if ship.has_rudder() {
+        all.push(particular("A_R", ship.rudder.area, "m2", "rudder area"));
+        all.push(particular("H_R", ship.rudder.span, "m", "rudder span"));
+        all.push(particular("x_R", ship.rudder_x(), "m", "rudder, forward of midship"));
+    }
+    let about =
+        "in |u|, |v|, U = sqrt(... + small^2) and |r| = sqrt(r^2 + (small/L)^2), so that they are smooth at rest";
+    all.push(particular("small", ship.small_speed(), "m/s", about));
+    all
 }
 
 /// How many of the MMG primes are masses, inertias and their centre: those that every form has, first in the list.
