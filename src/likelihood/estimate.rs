@@ -309,6 +309,15 @@ pub fn estimate_above(
     Estimate { model, noise, free: free.to_vec(), log_posterior: value, seen }
 }
 
+/// What a Newton step inside the bounds promises from where an estimate ended, in likelihood units.
+pub fn left_to_gain(found: &Estimate, integration: Integration, runs: &[Run]) -> f64 {
+    let columns: Vec<Column> = found.free.iter().map(|f| f.column).collect();
+    let filter = Filter::new(&found.model, integration, &columns);
+    let Sums { evidence, .. } = Sums::of(&filter, runs, &found.noise, &restrictions(&found.free), false);
+    let quadratic = quadratic(&evidence, &found.model, &found.free);
+    quadratic.promise(&quadratic.step(0.0))
+}
+
 /// A fit of free parameters and noise to runs.
 struct Fit<'a> {
     integration: Integration,

@@ -15,7 +15,9 @@ pub struct Effort {
 }
 
 /// The first estimate of the base model, from the values of the model file.
-pub const FIRST: Effort = Effort { rounds: 12, noise_rounds: 4, noise_iterations: 14 };
+/// It ends where neither parameters nor noise gain more; the rounds only bound it: of a craft known by its size alone they begin far from
+/// their values, and an unknown force takes up what they lack until they are there.
+pub const FIRST: Effort = Effort { rounds: 60, noise_rounds: 60, noise_iterations: 14 };
 /// A refit at given noise.
 pub const REFIT: Effort = Effort { rounds: 10, noise_rounds: 0, noise_iterations: 0 };
 /// A refit with the noise estimated along, to convergence: a noise that includes a missing force falls once the force is in the model.
@@ -113,6 +115,9 @@ numbers! {
     CALM_ITERATIONS: usize = 8, COST;
     /// Gain in log-posterior below which a parameter step is not worth taking.
     STEP_GAIN: f64 = 0.3, COST;
+    /// What a Newton step may still promise, in log-posterior, where an estimate counts as at its optimum: damped steps may stop on a curved
+    /// ridge, such as that along which masses and gains of a craft known by its size alone grow together.
+    LEFT_TO_GAIN: f64 = 1.0, COST;
     /// Longest parameter step, in units of the scales: beyond it the linearisation says nothing.
     STEP_LONGEST: f64 = 10.0, COST;
     /// Length of a parameter step, in units of the scales, below which the estimate has converged.

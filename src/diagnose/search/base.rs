@@ -2,9 +2,12 @@
 //! What physics it lacks is tested elsewhere; here recordings and integration step are audited.
 
 use super::decide::is_euler;
+use super::problem::Problem;
 use crate::diagnose::evidence::admit::{Admission, admit, followed};
-use crate::diagnose::settings::{EULER_EXACT, EULER_HOPELESS, Effort, FIRST, LOSS_ROUNDS, REFIT, SETTLE, Settings};
-use crate::likelihood::estimate::{Estimate, estimate, log_posterior, passes};
+use crate::diagnose::settings::{
+    EULER_EXACT, EULER_HOPELESS, Effort, FIRST, LEFT_TO_GAIN, LOSS_ROUNDS, REFIT, SETTLE, Settings,
+};
+use crate::likelihood::estimate::{Estimate, estimate, left_to_gain, log_posterior, passes};
 use crate::likelihood::noise::NoisePrior;
 use crate::likelihood::noise_fit::guess;
 use crate::likelihood::parameters::base_parameters;
@@ -95,7 +98,21 @@ impl BaseFit {
         (question.progress)("auditing recordings and integration step");
         let mut admission = admit(&base.model, integration, &base.noise, &kept, &at);
         admission.issues.extend(issues);
-        Self { estimate: base, prior, runs: kept, integration, admission }.read_as_euler()
+        Self { estimate: base, prior, runs: kept, integration, admission }.read_as_euler().settled(question.settings)
+    }
+
+    /// The base fit at its optimum: where a step still promises more, it is solved within its bounds and constraints first, and estimated on from
+    /// there.
+    fn settled(mut self, settings: &Settings) -> Self {
+        let Self { estimate, prior, runs, integration, .. } = &self;
+        if left_to_gain(estimate, *integration, runs) > LEFT_TO_GAIN {
+            let problem = Problem { integration: *integration, runs, candidates: &[], prior, settings };
+            let solved = problem.written(estimate);
+            if solved.log_posterior > estimate.log_posterior {
+                self.estimate = problem.again(&solved, SETTLE);
+            }
+        }
+        self
     }
 
     /// The base fit with explicit Euler steps of one sample period, where the recordings were made so: such steps reproduce them to
@@ -187,5 +204,23 @@ mod tests {
         let base = BaseFit::new(&question(&model, &settings), AuditedRuns::new(runs, 85.0));
         assert!(is_euler(base.admission.euler_gain), "{}", base.admission.euler_gain);
         assert_eq!((base.integration, base.admission.integration), (EULER, EULER));
+    }
+
+    #[test]
+    fn a_base_that_begins_far_from_its_values_ends_at_the_optimum_of_one_that_begins_there() {
+        let (truth, settings) = (model(), Settings { nuisance: false, ..Settings::default() });
+        let mut far = truth.clone();
+        for p in far.parameters.iter_mut().filter(|p| p.free) {
+            p.value = (p.value + 3.0 * p.scale).clamp(p.lower, p.upper);
+        }
+        let fitted = |model: &Model| {
+            let audited = AuditedRuns::new(runs(&truth, 8), truth.ship.hull.lpp);
+            let base = BaseFit::new(&question(model, &settings), audited);
+            let left = left_to_gain(&base.estimate, base.integration, &base.runs);
+            assert!(left <= LEFT_TO_GAIN, "{left}");
+            base.estimate.log_posterior
+        };
+        let (near, from_far) = (fitted(&truth), fitted(&far));
+        assert!((near - from_far).abs() < 2.0 * LEFT_TO_GAIN, "{near} {from_far}");
     }
 }

@@ -6,7 +6,8 @@ mod user;
 mod verdict;
 
 pub use crate::likelihood::settings::{
-    Effort, FIRST, GATE, IDENTIFIABLE_SHARE, LIKELIHOOD, Number, REFIT, SCATTER_GROUPS, SETTLE, STEP_GAIN, TOGETHER,
+    Effort, FIRST, GATE, IDENTIFIABLE_SHARE, LEFT_TO_GAIN, LIKELIHOOD, Number, REFIT, SCATTER_GROUPS, SETTLE,
+    STEP_GAIN, TOGETHER,
 };
 pub use estimation::*;
 pub use user::Settings;

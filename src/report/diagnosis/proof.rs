@@ -98,7 +98,7 @@ pub(super) fn proof(d: &Diagnosis) -> Vec<String> {
         h.worse
     )];
     if h.ci95.is_some_and(|[low, _]| low <= 0.0) {
-        lines.push("the interval reaches zero: these test runs do not confirm the gain".to_owned());
+        lines.push("the interval reaches zero: whether simulations of such runs become better is open".to_owned());
     }
     if let (Some(run), Some(change)) = (&h.worst_run, h.worst_improvement) {
         let word = if change < 0.0 { "worse" } else { "better" };
