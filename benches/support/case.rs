@@ -56,6 +56,7 @@ pub fn recordings(dt: f64) -> Vec<Run> {
                 measured: measured(&states),
                 initial,
                 disturbed: Vec::new(),
+                derived: [false; 6],
             }
         })
         .collect()

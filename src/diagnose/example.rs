@@ -123,6 +123,7 @@ fn run(model: &Model, i: usize, rng: &mut ChaCha8Rng) -> Run {
         initial: samples[0],
         measured: measured(&samples),
         disturbed: Vec::new(),
+        derived: [false; 6],
     }
 }
 

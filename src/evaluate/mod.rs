@@ -94,6 +94,7 @@ mod tests {
                     inputs,
                     initial,
                     disturbed: Vec::new(),
+                    derived: [false; 6],
                 };
                 window.measured = measured(&predict(model, &window, Integration::default()).states);
                 window

@@ -71,7 +71,7 @@ impl Linearised for One<'_> {
     }
     #[inline(always)]
     fn measured(&self, sample: usize, channel: usize) -> Option<(Lanes, Lanes)> {
-        let y = self.0.measured[sample][channel]?;
+        let y = self.0.recorded(sample, channel)?;
         Some((Lanes::from_f64(y - self.1.offset[sample][channel]), Lanes::one()))
     }
     #[inline(always)]
@@ -109,7 +109,7 @@ impl Linearised for Four<'_> {
         std::array::from_fn(|i| self.gather(|run, _| Some(run.initial[i])))
     }
     fn measured(&self, sample: usize, channel: usize) -> Option<(Lanes, Lanes)> {
-        let has = |run: &Run| run.measured.get(sample).and_then(|m| m[channel]);
+        let has = |run: &Run| run.recorded(sample, channel);
         let error = self.gather(|run, t| Some(has(run)? - t.offset[sample][channel]));
         let some = self.0.iter().any(|(run, _)| has(run).is_some());
         some.then(|| (error, self.gather(|run, _| has(run).map(|_| 1.0))))
@@ -384,6 +384,7 @@ pub fn guess(runs: &[Run], model: &Model) -> Noise {
                     let w: Vec<[f64; STATES]> = w.iter().map(or_nan).collect();
                     channels
                         .iter()
+                        .filter(|j| !r.derived[**j])
                         .map(move |&j| (w[3][j] - 3.0 * w[2][j] + 3.0 * w[1][j] - w[0][j]).abs() / 20f64.sqrt())
                 })
             })
@@ -427,6 +428,24 @@ mod tests {
         for (sensor, white) in found.sensors.iter().zip([0.3, 0.002, 0.02, 0.0005]) {
             assert!((sensor.white / white).ln().abs() < 0.15, "{sensor:?} for {white}");
         }
+    }
+
+    #[test]
+    fn a_channel_that_is_derived_is_no_observation() {
+        let model = model();
+        let (mut derived, mut blank) = (runs(&model, 5), runs(&model, 5));
+        for j in 3..STATES {
+            derived.iter_mut().for_each(|r| r.derived[j] = true);
+            blank.iter_mut().flat_map(|r| &mut r.measured).for_each(|m| m[j] = None);
+        }
+        let of = |runs: &[Run]| {
+            let noise = guess(runs, &model);
+            let values: Vec<f64> =
+                passes(&model, RK4, &[], runs, &noise, true).iter().map(|pass| pass.log_likelihood).collect();
+            (noise, values)
+        };
+        assert_eq!(of(&derived), of(&blank));
+        assert_ne!(of(&derived).1, of(&runs(&model, 5)).1);
     }
 
     fn linearised(runs: &[Run]) -> Vec<Pass> {

@@ -282,7 +282,7 @@ impl<'f, P: Plain> Filtering<'f, P> {
         let mut innovation = [P::from_f64(f64::NAN); STATES];
         let mut variance = innovation;
         for j in 0..STATES {
-            let measured = |lane: usize| self.runs.get(lane).and_then(|(_, run)| run.measured.get(k)?[j]);
+            let measured = |lane: usize| self.runs.get(lane).and_then(|(_, run)| run.recorded(k, j));
             let mut present = P::gather(|lane| f64::from(u8::from(measured(lane).is_some())));
             (out.some[j], out.all[j]) = (false, false);
             if (0..P::WIDTH).all(|lane| present.in_lane(lane) == 0.0) {

@@ -299,6 +299,12 @@ fn command(name: &str) -> Option<&'static ChannelInfo> {
         Drive::X => (Quantity::Force, FORCE, "surge force", "force forward"),
         Drive::Y => (Quantity::Force, FORCE, "sway force", "force to starboard"),
         Drive::N => (Quantity::Moment, FORCE, "yaw moment", "moment to starboard"),
+        Drive::RateOrder => {
+            (Quantity::Rotation, THRUSTER, "ordered rate", "rate ordered; drives it where `.rate` is not recorded")
+        }
+        Drive::AngleOrder => {
+            (Quantity::Angle, HEADING, "ordered angle", "angle ordered; drives it where `.angle` is not recorded")
+        }
     };
     let kept: &'static str = Box::leak(name.to_owned().into_boxed_str());
     let words: &'static str = Box::leak(format!("{what} of the actuator {actuator}").into_boxed_str());
@@ -334,6 +340,13 @@ impl Channel {
     /// Channels whose dropouts interrupt a run: all but the orders and the logs, which no simulation needs.
     pub fn interrupts(self) -> bool {
         !matches!(self, Self::T | Self::DeltaOrder | Self::NOrder | Self::UWater | Self::VWater)
+            && !matches!(Drive::split(self.name()), Some((_, Drive::RateOrder | Drive::AngleOrder)))
+    }
+
+    /// The channel of what was ordered of this one, for the rate and the angle of a named actuator: `port.rate_order` of `port.rate`.
+    pub fn ordered(self) -> Option<Self> {
+        let (actuator, drive) = Drive::split(self.name())?;
+        Self::from_name(&format!("{actuator}.{}", drive.ordered()?.suffix()))
     }
 }
 

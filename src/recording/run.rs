@@ -53,9 +53,18 @@ pub struct Run {
     pub initial: [f64; STATES],
     /// Ranges of samples, ends included, in which a known event pushed the ship: there an unknown force may be anything.
     pub disturbed: Vec<(usize, usize)>,
+    /// Which channels are derived from other recorded ones, and no observation of their own.
+    pub derived: [bool; STATES],
 }
 
 impl Run {
+    /// What a sensor recorded of a channel at a sample; `None` where nothing was, and of a derived channel, which repeats what those say
+    /// that it is derived from.
+    #[inline]
+    pub fn recorded(&self, sample: usize, channel: usize) -> Option<f64> {
+        self.measured.get(sample)?[channel].filter(|_| !self.derived[channel])
+    }
+
     /// Number of steps.
     pub fn steps(&self) -> usize {
         self.inputs.len().saturating_sub(1)
@@ -139,7 +148,16 @@ mod tests {
             initial: states[0],
             measured: measured(&states),
             disturbed: vec![(3, 4)],
+            derived: [false; STATES],
         }
+    }
+
+    #[test]
+    fn what_is_derived_was_not_recorded() {
+        let mut run = north();
+        assert_eq!((run.recorded(2, 3), run.recorded(99, 3)), (Some(2.0), None));
+        run.derived[3] = true;
+        assert_eq!((run.recorded(2, 3), run.recorded(2, 0)), (None, Some(4.0)));
     }
 
     #[test]

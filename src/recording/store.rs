@@ -204,7 +204,7 @@ impl RunFile {
     }
 }
 
-/// A run as bytes: name, step, step of the recording, start, disturbed ranges, then each input and each channel as one value or as one a
+/// A run as bytes: name, step, step of the recording, start, disturbed ranges, derived channels, then each input and each channel as one value or as one a
 /// sample.
 fn encoded(run: &Run) -> Vec<u8> {
     let samples = run.inputs.len();
@@ -221,6 +221,7 @@ fn encoded(run: &Run) -> Vec<u8> {
         count(&mut bytes, *from);
         count(&mut bytes, *to);
     }
+    bytes.extend(run.derived.map(u8::from));
     count(&mut bytes, samples);
     count(&mut bytes, run.measured.len());
     let _: Inputs<()> = Inputs::from_entries(|entry: fn(&Inputs<f64>) -> &f64| {
@@ -303,6 +304,7 @@ fn decoded<'a>(bytes: &'a [u8], source: &Source) -> Option<Run> {
     }
     let ranges = bytes.count()?;
     let disturbed = (0..ranges).map(|_| Some((bytes.count()?, bytes.count()?))).collect::<Option<_>>()?;
+    let derived: [u8; STATES] = bytes.take(STATES)?.try_into().ok()?;
     let (samples, measured) = (bytes.count()?, bytes.count()?);
     let mut whole = true;
     let columns: Inputs<Column<'a>> = Inputs::from_entries(|_: fn(&Inputs<f64>) -> &f64| {
@@ -329,6 +331,7 @@ fn decoded<'a>(bytes: &'a [u8], source: &Source) -> Option<Run> {
         measured: (0..measured).map(|k| std::array::from_fn(|c| value(k, c))).collect(),
         initial,
         disturbed,
+        derived: derived.map(|flag| flag != 0),
     })
 }
 
@@ -360,6 +363,7 @@ mod tests {
                 measured: (0..samples).map(measured).collect(),
                 initial: [1.0, -0.0, f64::MIN_POSITIVE, 1e300, 0.1, 2.0],
                 disturbed: if i == 2 { vec![(1, 2), (3, 5)] } else { Vec::new() },
+                derived: std::array::from_fn(|c| c > 2 && i.is_multiple_of(2)),
             }
         };
         (0..12).map(run).collect()

@@ -457,6 +457,7 @@ mod tests {
             measured: measured(&[state]),
             initial: state,
             disturbed: Vec::new(),
+            derived: [false; STATES],
         };
         let count = |run: &Run| outside(&model(Form::Paper, &[]), samples(run)).samples;
         assert_eq!(count(&run), 1);

@@ -238,6 +238,12 @@ impl Recording {
             initial: first.map(|v| v.unwrap_or(0.0)),
             measured,
             disturbed: Vec::new(),
+            // Made of a log through the water and a recorded current, a velocity is an observation.
+            derived: std::array::from_fn(|i| {
+                let logged = [(Channel::U, Channel::UWater), (Channel::V, Channel::VWater)];
+                let by_log = |(own, log): &(Channel, Channel)| *own == STATE_CHANNELS[i] && self.has(*log);
+                self.derived().contains(&STATE_CHANNELS[i]) && !logged.iter().any(by_log)
+            }),
         };
         let (span, all) = match settings.initial {
             Initial::First => (10.0 * grid.usual, false),
@@ -321,8 +327,10 @@ impl Recording {
         if !self.has(Channel::Psi) {
             need(Channel::R, "record it or the heading")?;
         }
+        // What was ordered stands for a rate or an angle that was not fed back.
+        let fed_back = |c: Channel| c.ordered().filter(|ordered| !self.has(c) && self.has(*ordered)).unwrap_or(c);
         for channel in settings.driven.needs() {
-            need(channel, "add the column")?;
+            need(fed_back(channel), "add the column")?;
         }
         let mut inputs = Inputs::from_entries(|_: fn(&Inputs<f64>) -> &f64| Vec::new());
         for (name, values) in inputs.recorded() {
@@ -331,7 +339,7 @@ impl Recording {
             }
         }
         for (values, channel) in inputs.commands.iter_mut().zip(&settings.driven.commands) {
-            *values = need(*channel, "add the column")?.to_vec();
+            *values = need(fed_back(*channel), "add the column")?.to_vec();
         }
         let mut directed = false;
         let mut put = |vectors: &mut [Vec<f64>; 2], values: Vec<[f64; 2]>| {

@@ -124,11 +124,16 @@ pub enum Drive {
     Y,
     /// `NAME.N`.
     N,
+    /// `NAME.rate_order`: the rate that was ordered, beside the one fed back or in its place.
+    RateOrder,
+    /// `NAME.angle_order`: the angle that was ordered, beside the one fed back or in its place.
+    AngleOrder,
 }
 
 impl Drive {
     /// All of them.
-    pub const ALL: [Self; 6] = [Self::Rate, Self::Angle, Self::Order, Self::X, Self::Y, Self::N];
+    pub const ALL: [Self; 8] =
+        [Self::Rate, Self::Angle, Self::Order, Self::X, Self::Y, Self::N, Self::RateOrder, Self::AngleOrder];
 
     /// The second half of the channel's name.
     pub fn suffix(self) -> &'static str {
@@ -139,6 +144,17 @@ impl Drive {
             Self::X => "X",
             Self::Y => "Y",
             Self::N => "N",
+            Self::RateOrder => "rate_order",
+            Self::AngleOrder => "angle_order",
+        }
+    }
+
+    /// What was ordered of what is fed back; `None` where there is no such pair.
+    pub fn ordered(self) -> Option<Self> {
+        match self {
+            Self::Rate => Some(Self::RateOrder),
+            Self::Angle => Some(Self::AngleOrder),
+            _ => None,
         }
     }
 
@@ -411,6 +427,7 @@ mod tests {
     fn a_name_of_a_channel_is_an_actuator_and_what_drives_it() {
         assert_eq!(Drive::split("fore_port.rate"), Some(("fore_port", Drive::Rate)));
         assert_eq!(Drive::split("tau.X"), Some(("tau", Drive::X)));
+        assert_eq!(Drive::split("port.rate_order"), Some(("port", Drive::RateOrder)));
         for other in ["tau.x", "rate", ".rate", "1a.rate", "a b.rate", "a.rate.order"] {
             assert_eq!(Drive::split(other), None, "{other}");
         }

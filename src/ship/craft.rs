@@ -100,13 +100,35 @@ impl Ship {
             a.drives().into_iter().map(|drive| match drive {
                 Drive::Rate => a.drives_ahead() * n,
                 Drive::Angle => a.steers() * delta,
-                Drive::Order | Drive::X | Drive::Y | Drive::N => 0.0,
+                _ => 0.0,
             })
         });
         for (command, order) in inputs.commands.iter_mut().zip(ordered) {
             *command = order;
         }
         inputs
+    }
+
+    /// The rudder angle \[rad\] and the propeller rate \[1/s\] that the commands of its named actuators amount to, as
+    /// [`Self::inputs_ordered`] gives them: means over those that steer and those that drive. Those of `[rudder]` and `[propeller]` where it has them.
+    pub fn helm_and_shaft(&self, inputs: &Inputs<f64>) -> [f64; 2] {
+        let (mut helm, mut shaft) = ([0.0; 2], [0.0; 2]);
+        let drives = self.actuators.iter().flat_map(|a| a.drives().into_iter().map(move |drive| (a, drive)));
+        for ((a, drive), command) in drives.zip(inputs.commands) {
+            let (sum, sign, value) = match drive {
+                Drive::Angle => (&mut helm, a.steers(), command.sin().atan2(command.cos())),
+                Drive::Rate => (&mut shaft, a.drives_ahead(), command),
+                _ => continue,
+            };
+            if sign != 0.0 {
+                (sum[0], sum[1]) = (sum[0] + sign * value, sum[1] + 1.0);
+            }
+        }
+        let mean = |[sum, count]: [f64; 2], own: f64| if count > 0.0 { sum / count } else { own };
+        [
+            if self.has_rudder() { inputs.delta } else { mean(helm, inputs.delta) },
+            if self.has_propeller() { inputs.n } else { mean(shaft, inputs.n) },
+        ]
     }
 
     /// Length \[m\] that the advance of a propeller is measured with: its diameter, of a thruster of unknown make 2 % of the length.
@@ -180,6 +202,18 @@ mod tests {
             craft("[[actuator]]\nname = \"port\"\nlaw = \"thruster\"\nangle = 0\ny = -0.3\ngain = 0.02\nlag = 0.4\n");
         let given = ship.unwrap().given_parameters();
         assert_eq!((given["port.gain"], given["port.lag"], given.contains_key("port.astern")), (0.02, 0.4, false));
+    }
+
+    #[test]
+    fn the_helm_of_an_azimuth_aft_is_the_angle_that_turns_the_same_way() {
+        let ship = craft(
+            "[[actuator]]\nname = \"aft\"\nlaw = \"thruster\"\nx = -0.5\n[[actuator]]\nname = \"bow\"\nlaw = \"thruster\"\nx = 0.5\n",
+        );
+        let ship = ship.unwrap();
+        let inputs = ship.inputs_ordered(0.0, 4.0, 0.3);
+        assert_eq!(inputs.commands[..4], [4.0, -0.3, 4.0, 0.0]);
+        let [helm, shaft] = ship.helm_and_shaft(&inputs);
+        assert!((helm - 0.3).abs() < 1e-12 && shaft == 4.0);
     }
 
     #[test]

@@ -80,6 +80,7 @@ fn come_back(craft: &str, known: &[(&str, f64)], speed: f64, commands: impl Fn(f
             measured: measured(&sailed.states),
             initial,
             disturbed: Vec::new(),
+            derived: [false; 6],
         }
     };
     let runs: Vec<Run> = (0..4).map(run).collect();

@@ -86,6 +86,7 @@ fn recordings(truth: &Model, count: usize, noise: f64, extra: impl Fn(usize, usi
                 measured: measured.collect(),
                 initial: states[start],
                 disturbed: Vec::new(),
+                derived: [false; 6],
             });
         }
     }

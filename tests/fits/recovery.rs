@@ -73,6 +73,7 @@ fn recordings(truth: &Model, dt: f64, samples: usize) -> Vec<Run> {
             measured: measured(&trajectory.states),
             initial,
             disturbed: Vec::new(),
+            derived: [false; 6],
         });
     }
     runs

@@ -379,6 +379,28 @@ fn a_recording_has_the_channels_of_its_actuators_by_name_and_a_simulation_in_the
     let mut expected = [0.0; COMMANDS];
     (expected[0], expected[1], expected[2]) = (2e3, 2.0, 370_f64.to_radians());
     assert_eq!(run.inputs[1].commands, expected);
+    // What was ordered stands for what was not fed back, and beside it is kept and drives nothing.
+    let ordered = text.replace("left [rpm]", "port.rate_order [rpm]");
+    let both = text
+        .replace("t [s]", "t [s],port.rate_order [rpm]")
+        .replace("\n0,", "\n0,6,")
+        .replace("\n1,", "\n1,6,")
+        .replace("\n2,", "\n2,6,");
+    for (text, drops) in [(ordered, true), (both, false)] {
+        let mut map = map.clone();
+        if drops {
+            map = ColumnMap::parse(
+                "[columns]\n\"port.angle\" = { column = \"a\", unit = \"deg\" }\n",
+                Path::new("columns.toml"),
+            )
+            .unwrap();
+            map.driven = trimtab::recording::Driven::of(&craft);
+        }
+        let recording = Recording::parse(&text, Path::new("run.csv"), &map).unwrap();
+        assert!(recording.get(Channel::from_name("port.rate_order").unwrap()).is_some());
+        let run = recording.windows(&labels, &settings).unwrap().windows.remove(0);
+        assert_eq!(run.inputs[1].commands, expected);
+    }
     let absent = Recording::parse("t [s],x [m]\n0,0\n1,0\n", Path::new("run.csv"), &map).unwrap_err().to_string();
     assert!(absent.contains("[columns] \"port.angle\" = "), "{absent}");
 }

@@ -162,6 +162,7 @@ fn recorded(i: usize, session: String, dt: f64, inputs: Vec<Inputs<f64>>, states
         initial: states[0],
         measured: measured(states),
         disturbed: Vec::new(),
+        derived: [false; 6],
     }
 }
 

@@ -122,6 +122,7 @@ fn runs(recorded: &Recorded, sea: &Recorded) -> Vec<Run> {
                 initial: rows.iter().flatten().next().copied().unwrap_or_default(),
                 measured: rows.iter().map(|r| r.map_or([None; 6], |r| r.map(Some))).collect(),
                 disturbed: Vec::new(),
+                derived: [false; 6],
             }
         })
         .collect()

@@ -153,6 +153,7 @@ fn window(ship: ShipId, run: &Run) -> recording::Run {
         measured: measured(&run.state),
         initial: run.state[0],
         disturbed: Vec::new(),
+        derived: [false; 6],
     }
 }
 

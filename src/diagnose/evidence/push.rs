@@ -322,6 +322,7 @@ mod tests {
                 measured: vec![[Some(0.0); STATES]; count * LENGTH],
                 initial: [0.0; STATES],
                 disturbed: Vec::new(),
+                derived: [false; STATES],
             };
             (run, blocks)
         };

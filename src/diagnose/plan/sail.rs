@@ -187,6 +187,7 @@ impl Basin<'_> {
             measured: samples,
             initial,
             disturbed: Vec::new(),
+            derived: [false; STATES],
         };
         Ok(Sailed {
             name,

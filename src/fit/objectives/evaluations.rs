@@ -98,6 +98,7 @@ mod tests {
             measured: measured(&[[0.0; 6]; 20]),
             initial: [0.0, 0.0, 0.0, 4.0, 0.0, 0.0],
             disturbed: Vec::new(),
+            derived: [false; 6],
         };
         let runs = [run];
         let cost = Cost::new(&model, &runs, FitSettings::default().cost_options()).unwrap();

@@ -204,6 +204,7 @@ mod tests {
             measured: measured(&(0..=steps).map(|k| [k as f64; 6]).collect::<Vec<_>>()),
             initial: [-1.0; 6],
             disturbed: Vec::new(),
+            derived: [false; STATES],
         }
     }
 

@@ -419,7 +419,8 @@ impl ColumnMap {
     ) -> impl Iterator<Item = &'static ChannelInfo> {
         let listed = self.columns.iter().flat_map(BTreeMap::keys).map(String::as_str);
         let named = listed.chain(header).filter(|name| name.contains('.')).filter_map(Channel::from_name);
-        let all: BTreeSet<Channel> = named.chain(self.driven.needs()).collect();
+        let ordered = self.driven.needs().filter_map(Channel::ordered);
+        let all: BTreeSet<Channel> = named.chain(self.driven.needs()).chain(ordered).collect();
         all.into_iter().filter(|c| matches!(c, Channel::Command(_))).map(Channel::info)
     }
 

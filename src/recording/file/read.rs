@@ -335,7 +335,7 @@ fn sources(
         sources.insert(0, Source { channel, field: None, constant: 0.0, label, unit, scale: 1.0, offset: 0.0, blank });
     }
     for channel in [Channel::T].into_iter().chain(map.driven.needs()) {
-        if sources.iter().any(|s| s.channel == channel) {
+        if sources.iter().any(|s| s.channel == channel || Some(s.channel) == channel.ordered()) {
             continue;
         }
         if map.columns.is_some() {

@@ -82,7 +82,7 @@ impl From<&Run> for Series<'static> {
             span: span(run.duration(), run.dt),
             stretches: std::iter::once(0..run.measured.len()).collect(),
             state: std::array::from_fn(|c| channels[c].then(|| column(c))),
-            derived: [false; STATES],
+            derived: run.derived,
             recording: None,
             n: Some(run.inputs.iter().map(|i| i.n).collect()),
             delta: Some(run.inputs.iter().map(|i| i.delta).collect()),

@@ -277,6 +277,7 @@ mod tests {
                 initial: states[0],
                 measured: measured(&states),
                 disturbed: Vec::new(),
+                derived: [false; STATES],
             }
         };
         (0..8).map(run).collect()

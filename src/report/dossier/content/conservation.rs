@@ -157,6 +157,7 @@ mod tests {
             inputs,
             initial: [0.0, 0.0, 0.3, 4.0, 0.0, 0.0],
             disturbed: Vec::new(),
+            derived: [false; STATES],
         };
         conservation(&model, &[run]).unwrap()
     }
