@@ -83,7 +83,8 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     files.sort();
     files.dedup();
     output.reads_files(&files);
-    let (fit, maneuver) = (loaded.fit_settings()?, loaded.maneuver_settings()?.of_recordings(&loaded.study));
+    let (fit, maneuver) =
+        (loaded.fit_settings()?, loaded.maneuver_settings()?.of_recordings(&loaded.study, &loaded.model.ship));
     let judging = Judging::new(&fit, loaded.evaluation_settings()?);
     let settings = diagnosis_settings(&loaded, args)?;
     output.settings("fit", &fit)?;

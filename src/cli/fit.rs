@@ -52,7 +52,7 @@ With --out: fitted.toml (a model file with the estimates and their covariance, w
     ended). While the fit runs, best.toml is the model at the best point so far; it is removed at the end. \
     With --starts a fit that was killed goes on with the starts that are left when it is repeated on the same input.
 JSON: recordings.doubts[] (severity, fault, channel, text, next_step, runs, accepted): what the audit of the recordings found; \
-    result.converged, result.headline, result.status, result.solver_status (of Ipopt), result.hessian, result.checks (second solves, and how many found a lower cost), result.likelihood (start_log_posterior, log_posterior, noise, rounds; with objective = \"likelihood\" alone), result.doubts[] (kind: input, apart, model-error, windows-too-long or clustered; \
+    result.converged, result.headline, result.status, result.solver_status (of Ipopt), result.hessian, result.checks (second solves, and how many found a lower cost), result.likelihood (start_log_posterior, log_posterior, noise, rounds; with objective = \"likelihood\" alone), result.doubts[] (kind: backwards, input, apart, model-error, windows-too-long or clustered; \
     value, limit, sentence), result.input_error (input, kind, name, is_session, value, p; where one recording or session has another gain or zero), \
     result.seen_inputs[] (input, kind, smallest: from which size on such an error would be told, a share or rad), \
     result.residual_statistics (model_error, middle, apart, growth, growth_error, likeness), result.estimates[] \

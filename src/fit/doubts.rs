@@ -23,6 +23,7 @@ use crate::fit::solver::task::Task;
 use crate::numerals::{number_of, sig};
 use crate::ranks::{ExactSums, Ranks};
 use crate::recording::Run;
+use crate::ship::Ship;
 use crate::state::STATES;
 use crate::statistics::{outlier_p, quantile};
 use rayon::prelude::*;
@@ -87,6 +88,8 @@ pub enum DoubtKind {
     Apart,
     /// The input of one recording or session has another gain or zero than in the others.
     Input,
+    /// An actuator pushes against its order.
+    Backwards,
 }
 
 /// The statistics behind the doubts; one is absent where there are too few samples for it.
@@ -224,6 +227,32 @@ impl ResidualStatistics {
             ),
         })
     }
+}
+
+/// Standard errors by which a gain is below zero where its actuator pushes against its order.
+const BACKWARDS: f64 = 3.0;
+
+/// A free parameter with its estimate, standard error where the data give one, and unit.
+pub(in crate::fit) type Estimated<'a> = (&'a str, f64, Option<f64>, &'a str);
+
+/// The actuators of a craft that push against their orders: a gain that is surely negative.
+pub(in crate::fit) fn backwards<'a>(ship: &Ship, estimates: impl Iterator<Item = Estimated<'a>>) -> Vec<Doubt> {
+    let doubt = |(name, value, error, unit): Estimated<'a>| {
+        let (actuator, parameter) = name.split_once('.')?;
+        let is_gain = parameter == "slope" || parameter.starts_with("gain");
+        let is_negative = error.is_some_and(|error| value < -BACKWARDS * error);
+        (is_gain && is_negative && ship.actuator(actuator).is_some()).then(|| Doubt {
+            kind: DoubtKind::Backwards,
+            value,
+            limit: 0.0,
+            sentence: format!(
+                "`{actuator}` pushes against its order ({name} = {} {unit}): its order or its angle is recorded with the other sign (`scale = -1` \
+                 in a column map turns it), its place or angle in the ship file is another, or it is the log of another actuator",
+                sig(value, 3)
+            ),
+        })
+    };
+    estimates.filter_map(doubt).collect()
 }
 
 /// The first line of a fit: how it ended, and what is said against it.
@@ -509,6 +538,21 @@ fn likeness(ranks: &Ranks, drawn: &[Residuals]) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn an_actuator_whose_gain_is_surely_negative_pushes_against_its_order() {
+        let text = "name = \"boat\"\n[hull]\nlpp = 5.0\nbreadth = 1.8\nmass = 900.0\n[[actuator]]\nname = \"jet\"\nlaw = \"order\"\n";
+        let ship = crate::ship::Ship::parse(text, std::path::Path::new("ship.toml")).unwrap();
+        let of = |name: &'static str, value: f64, error: Option<f64>| {
+            super::backwards(&ship, std::iter::once((name, value, error, "N"))).len()
+        };
+        assert_eq!(of("jet.gain", -482.0, Some(40.0)), 1);
+        assert_eq!(
+            [of("jet.gain", -482.0, Some(200.0)), of("jet.gain", -482.0, None), of("jet.gain", 482.0, Some(40.0))],
+            [0; 3]
+        );
+        assert_eq!([of("jet.zero", -4.0, Some(0.1)), of("rudder.lift1", -4.0, Some(0.1))], [0; 2]);
+    }
+
     use super::*;
     use rand::SeedableRng;
     use rand_chacha::ChaCha8Rng;

@@ -2,7 +2,7 @@
 //! It solves nothing and prints nothing; the words are in [`report`](super::report).
 
 use super::covariance::{Covariance, CovarianceKind, Covariances, in_words};
-use super::doubts::{Doubt, ResidualStatistics, headline};
+use super::doubts::{Doubt, ResidualStatistics, backwards, headline};
 use super::error::FitError;
 use super::inputs::{InputError, Inputs, SeenInput, inputs};
 use super::settings::{FitSettings, Goal, Hessian};
@@ -274,7 +274,10 @@ fn describe(task: &Task, evaluations: &Evaluations, noise: Option<&Noise>, unit:
     let likeness = if unit == 1.0 { None } else { statistics.likeness };
     let covariances = Covariances::of(task, evaluations, unit, &end, likeness);
     let Inputs { error: input_error, seen: seen_inputs } = inputs(task, &end.p, noise);
-    let doubts = statistics.doubts(input_error.as_ref(), &covariances, task.scaling.scales.len());
+    let estimates = estimates(task, &end, &covariances);
+    let free = estimates.iter().map(|e| (e.name.as_str(), e.value, e.standard_error, e.unit));
+    let mut doubts = backwards(&model.ship, free);
+    doubts.extend(statistics.doubts(input_error.as_ref(), &covariances, task.scaling.scales.len()));
     let mut validity = Count::new(&model);
     task.runs.iter().for_each(|run| validity.add(validity::samples(&run)));
     validity.gather(task.cost.ranks());
@@ -290,7 +293,7 @@ fn describe(task: &Task, evaluations: &Evaluations, noise: Option<&Noise>, unit:
         solver_status: end.solver,
         hessian: task.settings.hessian,
         checks: end.checks,
-        estimates: estimates(task, &end, &covariances),
+        estimates,
         covariance_kind: covariances.kind,
         covariance: covariances.table(task, covariances.chosen()),
         freedom: covariances.freedom,

@@ -4,6 +4,7 @@
 use super::pass::Column;
 use crate::model::{BASE, Model, Prior};
 use crate::physics::Form;
+use crate::terms::propulsion::actuator::ActuatorTerm;
 
 /// Hull, propeller and rudder coefficients that are never known exactly, carried along with their priors.
 pub(crate) const NUISANCE: [&str; 31] = [
@@ -51,7 +52,13 @@ pub(crate) fn uncertain_coefficients(model: &Model) -> Vec<usize> {
         .filter(|i| !model.replaced(model.parameters[*i].info))
         .filter(|i| model.form != Form::General || of_terms(&model.parameters[*i].name, &BASE));
     let of_form = |i: &usize| of_terms(&model.parameters[*i].name, model.of_form());
-    listed.chain((0..model.parameters.len()).filter(of_form)).collect()
+    let of_actuator = |i: &usize| {
+        let own = |(name, parameter): (&str, &str)| {
+            model.ship.actuator(name).is_some() && ActuatorTerm::is_uncertain(parameter)
+        };
+        model.parameters[*i].name.split_once('.').is_some_and(own)
+    };
+    listed.chain((0..model.parameters.len()).filter(|i| of_form(i) || of_actuator(i))).collect()
 }
 
 /// Whether a parameter belongs to one of these terms.
@@ -162,5 +169,28 @@ impl FreeParameter {
     /// Logarithm of the prior density at the present value, up to a constant.
     pub(crate) fn log_prior(&self, model: &Model) -> f64 {
         self.prior.map_or(0.0, |prior| -0.5 * ((self.value(model) - prior.mean) / prior.sd).powi(2))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ship::Ship;
+    use std::path::Path;
+
+    #[test]
+    fn what_no_particulars_say_of_an_actuator_is_estimated_along_and_its_faults_are_not() {
+        let text = "name = \"cat\"\n[hull]\nlpp = 1.2\nbreadth = 0.9\nmass = 17.0\n[[actuator]]\nname = \"left\"\nx = -0.4\ny = -0.3\n\
+                    law = \"thruster\"\nangle = 0\n";
+        let ship = Ship::parse(text, Path::new("ship.toml")).unwrap();
+        let model = Model::new(ship, "cat", Form::General, &[]).unwrap();
+        let of = |name: &str| {
+            let free =
+                base_parameters(&model, true).into_iter().find(|f| f.column.parameter == model.index(name).unwrap());
+            free.map(|f| f.prior.is_some())
+        };
+        assert_eq!(["left.loss", "left.astern", "general_hull.surge_linear"].map(of), [Some(true); 3]);
+        assert_eq!(of("left.gain"), Some(false));
+        assert_eq!(["left.lost", "left.zero", "left.lag", "rudder.lift1"].map(of), [None; 4]);
     }
 }

@@ -464,6 +464,10 @@ fn a_column_of_text_is_named_where_it_may_be_why_something_is_asked() {
     let settings = ImportSettings { choices, session_gap: None };
     let said = imported("log.csv", text_of(names).as_bytes(), &settings).unwrap_err();
     contains_all(&said, &["--column u=u: ", text, "; write numbers there"]);
+    // What is asked of a column that is there, and the input that is not, in one message.
+    let once = log(&names.replace("|rpm", "|gear"), ",", row);
+    let said = imported("log.csv", once.as_bytes(), &ImportSettings::default()).unwrap_err();
+    contains_all(&said, &["`--unit v=", "no column is the propeller rate", "columns with numbers are: gear,"]);
     // A rudder of text is missing.
     let rudder = log(NAMES, ",", |s| with(s, &[(7, "hard over".to_owned())]));
     let said = imported("log.csv", rudder.as_bytes(), &ImportSettings::default()).unwrap_err();

@@ -245,7 +245,7 @@ impl Prepared {
         }
         settings.depth = args.depth.or(settings.depth);
         change(&mut settings);
-        let settings = settings.of_recordings(&loaded.study);
+        let settings = settings.of_recordings(&loaded.study, &loaded.model.ship);
         output.settings("maneuver", &settings)?;
         let path = loaded.study.path.clone();
         let fail = |error| CliError::Maneuver { path: path.clone(), error };

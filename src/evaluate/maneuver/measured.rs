@@ -97,6 +97,9 @@ pub fn measured(run: &Run, model: &Model, settings: &ManeuverSettings) -> (Vec<M
 /// The recorded track with velocities over ground, and the current at each sample where there is any.
 fn over_ground(run: &Run, model: &Model) -> (Track, Option<Vec<[f64; 2]>>) {
     let mut track = Track::recorded(run);
+    for (k, inputs) in run.inputs.iter().enumerate() {
+        [track.delta[k], track.n[k]] = model.ship.helm_and_shaft(inputs);
+    }
     let theta = model.values_in(&run.session);
     let through = model.part("water_log", &theta).first().copied().unwrap_or(0.0);
     let dynamics = Dynamics::new(model, theta);

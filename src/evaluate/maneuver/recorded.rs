@@ -2,10 +2,13 @@
 //! It reads these two numbers alone; whether a recording is sound is checked by the audit.
 
 use super::approach::{ManeuverSettings, Recorded};
-use crate::recording::{Channel, Recording};
+use crate::recording::{Channel, Driven, Recording};
+use crate::ship::Ship;
+use crate::state::Inputs;
 use crate::statistics::{median, quantile};
 use crate::study::{Listed, Study};
 use rayon::prelude::*;
+use std::borrow::Cow;
 
 /// The share of its rows at which a run is slower than its approach: trials lose speed, and noise adds some.
 const APPROACH: f64 = 0.9;
@@ -16,17 +19,17 @@ const GEAR: f64 = 0.75;
 
 impl ManeuverSettings {
     /// With what the recordings of a study show of the approach; they are read where the settings leave a part of it to them.
-    pub fn of_recordings(self, study: &Study) -> Self {
+    pub fn of_recordings(self, study: &Study, ship: &Ship) -> Self {
         let is_set = (self.speed.is_some() || self.n_rpm.is_some()) && self.rudder_rate_deg_s.is_some();
-        if is_set { self } else { Self { recorded: recorded(study), ..self } }
+        if is_set { self } else { Self { recorded: recorded(study, ship), ..self } }
     }
 }
 
 /// Speed and rudder rate of the recordings of a study; those that cannot be read are left out.
-fn recorded(study: &Study) -> Recorded {
+fn recorded(study: &Study, ship: &Ship) -> Recorded {
     let read = |run: &Listed| Some(study.recording(run).ok()?.part(run.from, run.to));
     let seen: Vec<(Option<f64>, Vec<f64>)> =
-        study.runs.par_iter().with_max_len(1).filter_map(read).map(|r| (fastest(&r), rates(&r))).collect();
+        study.runs.par_iter().with_max_len(1).filter_map(read).map(|r| (fastest(&r), rates(&r, ship))).collect();
     let speeds = seen.iter().filter_map(|(speed, _)| *speed);
     let mut rates: Vec<f64> = seen.iter().flat_map(|(_, rates)| rates.iter().copied()).collect();
     rates.sort_by(f64::total_cmp);
@@ -47,10 +50,28 @@ fn fastest(recording: &Recording) -> Option<f64> {
     quantile(&speeds, APPROACH)
 }
 
+/// The rudder angle, or the angle of the named actuators that steer.
+fn helm<'a>(recording: &'a Recording, ship: &Ship) -> Option<Cow<'a, [f64]>> {
+    if ship.has_rudder() {
+        return recording.get(Channel::Delta).map(Cow::Borrowed);
+    }
+    let commands: Vec<&[f64]> = Driven::of(ship).commands.iter().map(|c| recording.get(*c)).collect::<Option<_>>()?;
+    let at = |row: usize| {
+        let mut inputs = Inputs::actuators(0.0, 0.0, 0.0);
+        inputs.commands.iter_mut().zip(&commands).for_each(|(command, values)| *command = values[row]);
+        ship.helm_and_shaft(&inputs)[0]
+    };
+    ship.is_steered().then(|| (0..recording.time().len()).map(at).collect())
+}
+
 /// The rate of each move of the rudder from one order to another \[rad/s\]. The first and the last step of a move begin before it or
 /// end after it; of a move without a step between them the rate is not known.
-fn rates(recording: &Recording) -> Vec<f64> {
-    let (t, Some(delta)) = (recording.time(), recording.get(Channel::Delta)) else { return Vec::new() };
+fn rates(recording: &Recording, ship: &Ship) -> Vec<f64> {
+    helm(recording, ship).map_or(Vec::new(), |delta| moves(recording.time(), &delta))
+}
+
+/// See [`rates`].
+fn moves(t: &[f64], delta: &[f64]) -> Vec<f64> {
     let mut rates = Vec::new();
     let mut from = 0;
     for i in 1..=t.len() {
@@ -98,14 +119,18 @@ mod tests {
         Recording::from_channels("run", vec![(Channel::T, t), (Channel::Delta, delta), (Channel::U, u)]).unwrap()
     }
 
+    fn rates_of(run: &Recording) -> Vec<f64> {
+        moves(run.time(), run.get(Channel::Delta).unwrap())
+    }
+
     #[test]
     fn the_rate_of_the_gear_is_read_from_moves_between_orders() {
         for (rate, step) in [(0.04, 0.5), (0.04, 2.0), (0.1, 1.0)] {
-            let found = rates(&run(rate, step));
+            let found = rates_of(&run(rate, step));
             assert!(found.len() >= 8, "{found:?}");
             assert!(found.iter().all(|r| (r / rate - 1.0).abs() < 0.02), "{rate} every {step} s: {found:?}");
         }
-        assert!(rates(&run(10.0, 2.0)).is_empty(), "a rudder that is over within one step shows no rate");
+        assert!(rates_of(&run(10.0, 2.0)).is_empty(), "a rudder that is over within one step shows no rate");
     }
 
     #[test]

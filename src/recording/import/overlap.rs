@@ -52,7 +52,8 @@ pub fn shifts(logs: &[Log], choices: &Choices) -> Result<Vec<f64>, ImportError> 
                 break;
             };
             if !(one_file || is_whole(&logs[i], choices) && is_whole(log, choices)) {
-                return Err(refusal(&logs[i], log, column, ranges[i][0].max(ranges[j][0])));
+                let lacking = lacks(&logs[i], choices).or_else(|| lacks(log, choices));
+                return Err(refusal(&logs[i], log, column, ranges[i][0].max(ranges[j][0]), lacking));
             }
         }
         if at == groups.len() {
@@ -94,6 +95,11 @@ fn tell_otherwise(a: &Column, b: &Column, copies_join: bool) -> bool {
 
 /// Whether a file has what a recording of this craft needs, by itself: the heading, and every input.
 fn is_whole(log: &Log, choices: &Choices) -> bool {
+    lacks(log, choices).is_none()
+}
+
+/// The first channel that a file lacks to be a recording of this craft by itself.
+fn lacks(log: &Log, choices: &Choices) -> Option<Channel> {
     let driven = &choices.driven;
     let names: Vec<(&str, Option<&str>)> = log.columns.iter().map(|c| (c.name.as_str(), c.unit.as_deref())).collect();
     let of_actuators = by_names(&names, &driven.commands);
@@ -101,13 +107,11 @@ fn is_whole(log: &Log, choices: &Choices) -> bool {
         of_actuators.values().any(|c| *c == channel)
             || log.columns.iter().any(|c| choices.meaning(c) == Some(Meaning::Channel(channel)))
     };
-    has(Channel::Psi)
-        && (!driven.rudder || has(Channel::Delta))
-        && (!driven.propeller || has(Channel::N))
-        && driven.commands.iter().all(|c| has(*c))
+    let needed = std::iter::once(Channel::Psi).chain(driven.needs());
+    needed.into_iter().find(|c| !has(*c) && !c.ordered().is_some_and(has))
 }
 
-fn refusal(first: &Log, second: &Log, column: &str, from: f64) -> ImportError {
+fn refusal(first: &Log, second: &Log, column: &str, from: f64, lacking: Option<Channel>) -> ImportError {
     let [a, b] = [first, second].map(|log| log.path.display());
     let from = if first.clock == Clock::Utc { written(from) } else { format!("{from:.0} s") };
     let what = if first.path == second.path {
@@ -115,7 +119,14 @@ fn refusal(first: &Log, second: &Log, column: &str, from: f64) -> ImportError {
     } else {
         format!("{a} and {b} both have `{column}` over the same time, from {from} on, and not the same")
     };
+    let reason = lacking.map_or(String::new(), |c| {
+        let flag = if matches!(c, Channel::Command(_)) { "--actuator" } else { "--column" };
+        format!(
+            "; neither is a recording by itself, since no column is the {} (name it with `{flag} {c}=NAME` where one is)",
+            c.info().words
+        )
+    });
     ImportError::Choice(format!(
-        "{what}; nothing says which one belongs to the other files: take the column out of one of them, or import each recording with its own files"
+        "{what}{reason}; nothing says which one belongs to the other files: take the column out of one of them, or import each recording with its own files"
     ))
 }

@@ -88,9 +88,11 @@ pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, 
         log.columns.iter_mut().for_each(|c| c.t.iter_mut().for_each(|t| *t += shift));
     }
     let (chosen, unused) = choose(&logs, &settings.choices)?;
-    let mut signals = take(&chosen, &settings.choices).map_err(|error| with_texts(error, &logs))?;
+    let driven = &settings.choices.driven;
+    let taken = take(&chosen, &settings.choices).map_err(|error| with_inputs(error, &chosen, &logs, driven));
+    let mut signals = taken.map_err(|error| with_texts(error, &logs))?;
     signals.unused.extend(unused);
-    missing(&chosen, &signals, &logs, &settings.choices.driven).map_err(|error| with_texts(error, &logs))?;
+    missing(&chosen, &signals, &logs, driven).map_err(|error| with_texts(error, &logs))?;
     mend_heading(&mut signals);
     let (table, filled) = rows(&signals);
     let longest = settings.session_gap.unwrap_or(SESSION_GAP);
@@ -196,21 +198,45 @@ fn with_texts(error: ImportError, logs: &[Log]) -> ImportError {
     }
 }
 
+/// A question for a column that is not there.
+fn question(words: &str, flags: &str) -> String {
+    format!("no column is {words}: name it with `{flags}`")
+}
+
+/// The questions for the inputs of the craft that are not there.
+fn inputs_missing(has: impl Fn(Channel) -> bool, driven: &Driven) -> Vec<String> {
+    let helm = (driven.rudder && !has(Channel::Delta)).then(|| question("the rudder angle", "--column delta=NAME"));
+    let shaft = (driven.propeller && !has(Channel::N)).then(|| question("the propeller rate", "--column n=NAME"));
+    let commands = driven.commands.iter().filter(|c| !has(**c) && !c.ordered().is_some_and(&has));
+    let of_actuators = commands.map(|c| question(&format!("the {}", c.info().words), &format!("--actuator {c}=NAME")));
+    helm.into_iter().chain(shaft).chain(of_actuators).collect()
+}
+
+/// The columns that a question for one can be answered with.
+fn numbers(logs: &[Log]) -> String {
+    let mut names: Vec<&str> = logs.iter().flat_map(|log| log.columns.iter().map(|c| c.name.as_str())).collect();
+    names.sort_unstable();
+    names.dedup();
+    format!("the columns with numbers are: {}", names.join(", "))
+}
+
+/// What is asked of columns that are there, with the questions for inputs that are not, so that one answer is enough.
+fn with_inputs(error: ImportError, chosen: &Chosen<'_>, logs: &[Log], driven: &Driven) -> ImportError {
+    let ImportError::Undecided(mut asked) = error else { return error };
+    let lacking = inputs_missing(|channel| chosen.contains_key(&Meaning::Channel(channel)), driven);
+    if !lacking.is_empty() {
+        asked.extend(lacking);
+        asked.push(numbers(logs));
+    }
+    ImportError::Undecided(asked)
+}
+
 /// Refuses files that lack what every study needs, with one message for everything.
 fn missing(chosen: &Chosen<'_>, signals: &Signals, logs: &[Log], driven: &Driven) -> Result<(), ImportError> {
     let has = |channel| signals.by.contains_key(&Meaning::Channel(channel));
     let taken = |meaning: &Meaning| chosen.contains_key(meaning);
-    let mut asked = Vec::new();
-    let mut ask = |words: &str, flags: &str| asked.push(format!("no column is {words}: name it with `{flags}`"));
-    if driven.rudder && !has(Channel::Delta) {
-        ask("the rudder angle", "--column delta=NAME");
-    }
-    if driven.propeller && !has(Channel::N) {
-        ask("the propeller rate", "--column n=NAME");
-    }
-    for channel in driven.commands.iter().filter(|c| !has(**c)) {
-        ask(&format!("the {}", channel.info().words), &format!("--actuator {channel}=NAME"));
-    }
+    let mut asked = inputs_missing(has, driven);
+    let mut ask = |words: &str, flags: &str| asked.push(question(words, flags));
     if !has(Channel::Psi) {
         ask("the heading", "--column psi=NAME");
     }
@@ -224,10 +250,7 @@ fn missing(chosen: &Chosen<'_>, signals: &Signals, logs: &[Log], driven: &Driven
     if asked.is_empty() {
         return Ok(());
     }
-    let mut names: Vec<&str> = logs.iter().flat_map(|log| log.columns.iter().map(|c| c.name.as_str())).collect();
-    names.sort_unstable();
-    names.dedup();
-    asked.push(format!("the columns with numbers are: {}", names.join(", ")));
+    asked.push(numbers(logs));
     Err(ImportError::Undecided(asked))
 }
 

@@ -239,7 +239,8 @@ fn faults(actuator: &Actuator, parameters: &[ParameterInfo], partner: Option<&Pa
         faults.push(fault(&["lag"], title, format!("quick steps of {name} alone, from rest and back")));
     }
     if parameters.iter().any(|p| p.name == ZERO.name) {
-        let title = format!("offset of the direction of the actuator {name}");
+        let turned = if actuator.law == Law::Foil { "rudder angle" } else { "direction" };
+        let title = format!("offset of the {turned} of the actuator {name}");
         faults.push(fault(&["zero"], title, format!("runs driven by {name} alone, ahead and astern")));
     }
     if let Some(Partner { name: other, .. }) = partner {
@@ -377,6 +378,11 @@ impl ActuatorTerm {
             "slope" => actuator.law == Law::Foil,
             gain => gain.starts_with("gain"),
         }
+    }
+
+    /// Whether a parameter is one of a law that particulars give no more than roughly: it is estimated along, with its spread as prior.
+    pub fn is_uncertain(parameter: &str) -> bool {
+        ["loss", "astern", "wake", "kt0", "wake_ratio", "race", "straightening"].contains(&parameter)
     }
 
     /// Sine and cosine of the direction in which it pushes.

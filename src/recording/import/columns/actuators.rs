@@ -38,9 +38,33 @@ const KINDS: [(&[&str], Option<Quantity>); 5] = [
             "fb",
             "actual",
             "meas",
+            "pct",
+            "percent",
         ],
         None,
     ),
+];
+
+/// Words that leave no doubt of what a column is though it names no actuator: `speed` and `angle` may be the ship's.
+const PLAIN: [&str; 18] = [
+    "rpm",
+    "rps",
+    "revs",
+    "rev",
+    "azi",
+    "azimuth",
+    "steering",
+    "rudder",
+    "helm",
+    "rsa",
+    "throttle",
+    "pwm",
+    "duty",
+    "thruster",
+    "motor",
+    "engine",
+    "propeller",
+    "screw",
 ];
 
 /// The words of a name with one word for each place, numbers apart from letters (`n1` is `n 1`), as a set.
@@ -65,6 +89,8 @@ enum Asked {
     All,
     /// Those that do not say what it is: `azi_1` is `n1`, `a1` and `Motor 1`.
     Distinguishing,
+    /// None, of a column that says its kind and nothing else: `RPM` is the rate of the only actuator that has one.
+    None,
 }
 
 /// Whether a column drives this channel, by their names and the unit that the file gives.
@@ -75,22 +101,30 @@ fn drives(channel: Channel, column: &str, unit: Option<&str>, asked: Asked) -> b
     let said: Vec<Quantity> =
         found.iter().filter_map(|w| KINDS.iter().find(|(k, _)| k.contains(&w.as_str()))?.1).collect();
     let kind = |word: &String| KINDS.iter().any(|(kinds, _)| kinds.contains(&word.as_str()));
-    if asked == Asked::Distinguishing {
-        wanted.retain(|word| !kind(word));
+    match asked {
+        Asked::All => {}
+        Asked::Distinguishing => wanted.retain(|word| !kind(word)),
+        Asked::None => wanted.clear(),
     }
     found.retain(|word| wanted.contains(word) || !kind(word));
     let fits = unit.is_none_or(|unit| quantity.factor(unit).is_some());
     // A column that says nothing of its kind is the rate or the order, which every actuator has one of.
     let usual = matches!(quantity, Quantity::Rotation | Quantity::Number);
     let alike = if said.is_empty() { usual } else { said.contains(&quantity) };
-    !wanted.is_empty() && wanted == found && fits && alike
+    match asked {
+        Asked::All | Asked::Distinguishing => !wanted.is_empty() && wanted == found && fits && alike,
+        Asked::None => {
+            let plain = |word: &String| PLAIN.contains(&word.as_str());
+            found.is_empty() && said == [quantity] && fits && parts(column).iter().any(plain)
+        }
+    }
 }
 
 /// The column of each of these channels, where one column alone has its name and it is the name of no other of them: first by all words
-/// of the names, then, of what is left, by those that tell one actuator from another.
+/// of the names, then, of what is left, by those that tell one actuator from another, then by the kind alone.
 pub fn by_names(columns: &[(&str, Option<&str>)], channels: &[Channel]) -> BTreeMap<String, Channel> {
     let mut named: BTreeMap<String, Channel> = BTreeMap::new();
-    for asked in [Asked::All, Asked::Distinguishing] {
+    for asked in [Asked::All, Asked::Distinguishing, Asked::None] {
         let left: Vec<Channel> = channels.iter().filter(|c| !named.values().any(|n| n == *c)).copied().collect();
         let free: Vec<_> = columns.iter().filter(|(name, _)| !named.contains_key(*name)).collect();
         let of = |channel: Channel| free.iter().filter(move |(name, unit)| drives(channel, name, *unit, asked));
@@ -131,6 +165,15 @@ mod tests {
         assert_eq!((found["n1"].as_str(), found["azi_1"].as_str(), found.len()), ("pod1.rate", "pod1.angle", 4));
         let numbered = self::found(&columns, &["thruster_1.rate", "thruster_1.angle"]);
         assert_eq!((numbered["n1"].as_str(), numbered["azi_1"].as_str()), ("thruster_1.rate", "thruster_1.angle"));
+    }
+
+    #[test]
+    fn a_kind_alone_is_that_of_the_only_channel_of_its_kind() {
+        let columns = [("RPM", None), ("Azi", None), ("u", None)];
+        let one = found(&columns, &["azi.rate", "azi.angle"]);
+        assert_eq!((one["RPM"].as_str(), one["Azi"].as_str(), one.len()), ("azi.rate", "azi.angle", 2));
+        let two = found(&columns, &["port.rate", "starboard.rate"]);
+        assert!(two.is_empty(), "{two:?}");
     }
 
     #[test]
