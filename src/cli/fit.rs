@@ -54,7 +54,7 @@ With --out: fitted.toml (a model file with the estimates and their covariance, w
 JSON: recordings.doubts[] (severity, fault, channel, text, next_step, runs, accepted): what the audit of the recordings found; \
     result.converged, result.headline, result.status, result.solver_status (of Ipopt), result.hessian, result.checks (second solves, and how many found a lower cost), result.likelihood (start_log_posterior, log_posterior, noise, rounds; with objective = \"likelihood\" alone), result.doubts[] (kind: backwards, input, apart, model-error, windows-too-long or clustered; \
     value, limit, sentence), result.input_error (input, kind, name, is_session, value, p; where one recording or session has another gain or zero), \
-    result.seen_inputs[] (input, kind, smallest: from which size on such an error would be told, a share or rad), \
+    result.seen_inputs[] (input, kind, smallest: from which size on such an error would be reported, a share or rad), \
     result.residual_statistics (model_error, middle, apart, growth, growth_error, likeness), result.estimates[] \
     (name, symbol, unit, start, value, standard_error, interval, at_bound), result.start_cost, result.start_prior_cost, \
     result.cost, result.prior_cost, result.first_stage_parts, result.residual_variance, result.active[] (sentence, rule), \

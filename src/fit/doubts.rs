@@ -26,6 +26,7 @@ use crate::recording::Run;
 use crate::ship::Ship;
 use crate::state::STATES;
 use crate::statistics::{outlier_p, quantile};
+use crate::terms::propulsion::actuator::ActuatorTerm;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -239,9 +240,8 @@ pub(in crate::fit) type Estimated<'a> = (&'a str, f64, Option<f64>, &'a str);
 pub(in crate::fit) fn backwards<'a>(ship: &Ship, estimates: impl Iterator<Item = Estimated<'a>>) -> Vec<Doubt> {
     let doubt = |(name, value, error, unit): Estimated<'a>| {
         let (actuator, parameter) = name.split_once('.')?;
-        let is_gain = parameter == "slope" || parameter.starts_with("gain");
         let is_negative = error.is_some_and(|error| value < -BACKWARDS * error);
-        (is_gain && is_negative && ship.actuator(actuator).is_some()).then(|| Doubt {
+        (ActuatorTerm::is_gain(parameter) && is_negative && ship.actuator(actuator).is_some()).then(|| Doubt {
             kind: DoubtKind::Backwards,
             value,
             limit: 0.0,
@@ -538,21 +538,6 @@ fn likeness(ranks: &Ranks, drawn: &[Residuals]) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    #[test]
-    fn an_actuator_whose_gain_is_surely_negative_pushes_against_its_order() {
-        let text = "name = \"boat\"\n[hull]\nlpp = 5.0\nbreadth = 1.8\nmass = 900.0\n[[actuator]]\nname = \"jet\"\nlaw = \"order\"\n";
-        let ship = crate::ship::Ship::parse(text, std::path::Path::new("ship.toml")).unwrap();
-        let of = |name: &'static str, value: f64, error: Option<f64>| {
-            super::backwards(&ship, std::iter::once((name, value, error, "N"))).len()
-        };
-        assert_eq!(of("jet.gain", -482.0, Some(40.0)), 1);
-        assert_eq!(
-            [of("jet.gain", -482.0, Some(200.0)), of("jet.gain", -482.0, None), of("jet.gain", 482.0, Some(40.0))],
-            [0; 3]
-        );
-        assert_eq!([of("jet.zero", -4.0, Some(0.1)), of("rudder.lift1", -4.0, Some(0.1))], [0; 2]);
-    }
-
     use super::*;
     use rand::SeedableRng;
     use rand_chacha::ChaCha8Rng;
@@ -579,6 +564,21 @@ mod tests {
             tally.add(Residuals { recording, values, variance }, true);
         }
         tally.statistics(Ranks::one(), |_| [0.0; STATES])
+    }
+
+    #[test]
+    fn an_actuator_whose_gain_is_surely_negative_pushes_against_its_order() {
+        let text = "name = \"boat\"\n[hull]\nlpp = 5.0\nbreadth = 1.8\nmass = 900.0\n[[actuator]]\nname = \"jet\"\nlaw = \"order\"\n";
+        let ship = Ship::parse(text, std::path::Path::new("ship.toml")).unwrap();
+        let of = |name: &'static str, value: f64, error: Option<f64>| {
+            backwards(&ship, std::iter::once((name, value, error, "N"))).len()
+        };
+        assert_eq!(of("jet.gain", -482.0, Some(40.0)), 1);
+        assert_eq!(
+            [of("jet.gain", -482.0, Some(200.0)), of("jet.gain", -482.0, None), of("jet.gain", 482.0, Some(40.0))],
+            [0; 3]
+        );
+        assert_eq!([of("jet.zero", -4.0, Some(0.1)), of("rudder.lift1", -4.0, Some(0.1))], [0; 2]);
     }
 
     #[test]

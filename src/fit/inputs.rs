@@ -74,7 +74,7 @@ impl InputError {
     }
 }
 
-/// From which size on an error of an input would be told in one recording.
+/// From which size on an error of an input would be reported in one recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SeenInput {
     /// The input in words.
@@ -95,29 +95,30 @@ impl SeenInput {
         }
     }
 
-    /// What would be told of the inputs of single recordings, and what of all of them is not visible.
+    /// What would be reported of the inputs of single recordings, and what of all of them is not visible.
     pub fn sentences(seen: &[Self], recordings: usize) -> String {
-        let mut told = if recordings < APART_RECORDINGS {
+        let mut text = if recordings < APART_RECORDINGS {
             format!("Inputs of single recordings were not compared: that takes {APART_RECORDINGS} recordings.")
         } else {
             // What is beyond what it is a share of is no size.
             let sizes: Vec<String> = seen.iter().filter(|s| s.smallest < 1.0).map(Self::words).collect();
             match sizes.len() {
                 0 => "The recordings show no error of the inputs of a single one.".to_owned(),
-                _ => format!("An error of the inputs of one recording would be told: {}.", sizes.join("; ")),
+                _ => format!("An error of the inputs of one recording would be reported: {}.", sizes.join("; ")),
             }
         };
-        told += " Not visible is what the coefficients take up: the same gain in all recordings, and mass, draught, propeller and rudder of the \
+        text += " Not visible is what the coefficients take up: the same gain in all recordings, and mass, draught, propeller and rudder of the \
                  ship file; compare them with the drawings.";
-        told
+        text
     }
 }
 
 /// What a fit says of the inputs of its recordings.
+#[derive(Default)]
 pub(in crate::fit) struct Inputs {
     /// The error that is most significant, where one is.
     pub error: Option<InputError>,
-    /// What would be told.
+    /// What would be reported.
     pub seen: Vec<SeenInput>,
 }
 
@@ -140,7 +141,7 @@ struct OfRecording {
 
 /// What the recordings show of their inputs at the estimates `p`; `noise` is that of a fit by likelihood.
 pub(in crate::fit) fn inputs(task: &Task, p: &[f64], noise: Option<&Noise>) -> Inputs {
-    compared(task, p, noise).unwrap_or(Inputs { error: None, seen: Vec::new() })
+    compared(task, p, noise).unwrap_or_default()
 }
 
 fn compared(task: &Task, p: &[f64], noise: Option<&Noise>) -> Option<Inputs> {
@@ -187,7 +188,7 @@ fn compared(task: &Task, p: &[f64], noise: Option<&Noise>) -> Option<Inputs> {
     (!is_lost).then(|| Inputs { error: first.filter(|error| error.p < INPUT_CHANCE), seen: seen.collect() })
 }
 
-/// From which size on an error would be told in a recording of middle information, at a chance: the quantile of [`furthest`] times the
+/// From which size on an error would be reported in a recording of middle information, at a chance: the quantile of [`furthest`] times the
 /// scatter of z, over the root of the information.
 fn smallest(asked: &Asked, all: &[OfRecording], place: usize, model: &Model, chance: f64) -> Option<SeenInput> {
     let known = known(all, place)?;
@@ -314,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn an_error_of_the_size_that_would_be_told_is_at_the_limit() {
+    fn an_error_of_the_size_that_would_be_reported_is_at_the_limit() {
         let asked =
             Asked { input: "rudder angle".into(), kind: InputErrorKind::Gain, parameter: "rudder_gain.gain".into() };
         let of = |z: f64| OfRecording { name: format!("{z}"), session: "a".into(), sums: vec![[z * 20.0, 400.0]] };

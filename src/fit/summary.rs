@@ -91,7 +91,7 @@ pub struct Fit {
     /// The input that one recording or one session records in another way than the others, where there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub input_error: Option<InputError>,
-    /// From which size on an error of the inputs of one recording would be told.
+    /// From which size on an error of the inputs of one recording would be reported.
     pub seen_inputs: Vec<SeenInput>,
     /// The free parameters.
     pub estimates: Vec<Estimate>,

@@ -119,8 +119,8 @@ pub struct Flow<S: Scalar> {
     pub adjust: Adjust<S::Coefficient>,
 }
 
-/// Indices of the flow parameters.
-mod index {
+/// Indices of the flow parameters, of which the first six are those of any propeller.
+pub(crate) mod index {
     pub const WAKE: usize = 0;
     pub const THRUST_DEDUCTION: usize = 1;
     pub const KT0: usize = 2;

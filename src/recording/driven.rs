@@ -36,4 +36,9 @@ impl Driven {
         let helm = self.rudder.then_some(Channel::Delta);
         shaft.into_iter().chain(helm).chain(self.commands.iter().copied())
     }
+
+    /// The channels of those that are not there, nor what was ordered in their place.
+    pub fn missing<'a>(&'a self, has: impl Fn(Channel) -> bool + 'a) -> impl Iterator<Item = Channel> + 'a {
+        self.needs().filter(move |c| !has(*c) && !c.ordered().is_some_and(&has))
+    }
 }

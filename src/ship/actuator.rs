@@ -1,6 +1,7 @@
 //! Actuators of a craft by name: a place, a direction, a law, and the channels that drive it.
 //! What they push with is the term in `terms/actuator`; how their channels are found in a file is in `recording`.
 
+use super::rudder::{induced_force, normal_slope, steering_deduction};
 use crate::state::COMMANDS;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -234,15 +235,14 @@ impl Actuator {
             }
             Law::Foil => {
                 let span = self.blade_span();
-                let aspect = span * span / self.area.unwrap_or(1.0);
-                let slope = ("slope", 6.13 * aspect / (aspect + 2.25));
+                let slope = ("slope", normal_slope(span * span / self.area.unwrap_or(1.0)));
                 let place = self.x / lpp;
                 if self.behind.is_none() {
                     vec![slope, ("wake_ratio", 1.0), ("straightening", 1.0), ("lever", place)]
                 } else {
                     // The lever of a single rudder, -0.85 L at -0.5 L, in proportion.
                     let flow = [("wake_ratio", 1.05), ("straightening", 0.45), ("lever", 1.7 * place), ("race", 0.5)];
-                    let induced = [("t_R", 0.45 - 0.28 * block), ("a_H", 0.627 * block - 0.153), ("x_H", -0.45)];
+                    let induced = [("t_R", steering_deduction(block)), ("a_H", induced_force(block)), ("x_H", -0.45)];
                     [slope, ("race_astern", 0.144)].into_iter().chain(flow).chain(induced).collect()
                 }
             }
@@ -298,35 +298,33 @@ impl Actuator {
 
     /// Keys that belong to another law, and those that its own needs.
     fn misplaced(&self) -> Vec<(&'static str, f64, String)> {
-        let (thruster, propeller, foil) = ("`thruster`", "`propeller`", "`foil`");
-        let belongs: [(&'static str, bool, &[Law], String); 11] = [
-            (
-                "gain",
-                self.gain.is_some(),
-                &[Law::Force, Law::Order, Law::Thruster],
-                "`force`, `order`, `thruster`".into(),
-            ),
-            ("astern", self.astern.is_some(), &[Law::Thruster, Law::Propeller], format!("{thruster}, {propeller}")),
-            ("components", self.components.is_some(), &[Law::Force], "`force`".into()),
-            ("diameter", self.diameter.is_some(), &[Law::Propeller], propeller.into()),
-            ("thrust_coefficients", self.thrust_coefficients.is_some(), &[Law::Propeller], propeller.into()),
-            ("wake", self.wake.is_some(), &[Law::Propeller], propeller.into()),
-            ("thrust_deduction", self.thrust_deduction.is_some(), &[Law::Propeller], propeller.into()),
-            ("area", self.area.is_some(), &[Law::Foil], foil.into()),
-            ("span", self.span.is_some(), &[Law::Foil], foil.into()),
-            ("behind", self.behind.is_some(), &[Law::Foil], foil.into()),
-            (
-                "angle",
-                self.angle.is_some(),
-                &[Law::Order, Law::Thruster, Law::Propeller],
-                format!(
-                    "`order`, {thruster}, {propeller}: the components of a logged force say its direction, and a foil has the channel NAME.angle"
-                ),
-            ),
+        let screw = &[Law::Propeller][..];
+        let blade = &[Law::Foil][..];
+        let belongs = [
+            ("gain", self.gain.is_some(), &[Law::Force, Law::Order, Law::Thruster][..]),
+            ("astern", self.astern.is_some(), &[Law::Thruster, Law::Propeller]),
+            ("components", self.components.is_some(), &[Law::Force]),
+            ("diameter", self.diameter.is_some(), screw),
+            ("thrust_coefficients", self.thrust_coefficients.is_some(), screw),
+            ("wake", self.wake.is_some(), screw),
+            ("thrust_deduction", self.thrust_deduction.is_some(), screw),
+            ("area", self.area.is_some(), blade),
+            ("span", self.span.is_some(), blade),
+            ("behind", self.behind.is_some(), blade),
+            ("angle", self.angle.is_some(), &[Law::Order, Law::Thruster, Law::Propeller]),
         ];
-        let wrong = belongs.into_iter().filter(|(_, given, laws, _)| *given && !laws.contains(&self.law));
-        let mut faults: Vec<_> =
-            wrong.map(|(key, _, _, laws)| (key, f64::NAN, format!("belongs to law {laws}"))).collect();
+        let wrong = |(key, given, laws): (&'static str, bool, &[Law])| {
+            let named: Vec<String> = laws.iter().map(|law| format!("`{law:?}`").to_lowercase()).collect();
+            let reason = match key {
+                "angle" => {
+                    ": the components of a logged force say its direction, and a foil has the channel NAME.angle"
+                }
+                _ => "",
+            };
+            let text = format!("belongs to law {}{reason}", named.join(", "));
+            (given && !laws.contains(&self.law)).then_some((key, f64::NAN, text))
+        };
+        let mut faults: Vec<_> = belongs.into_iter().filter_map(wrong).collect();
         let mut needs = |law: Law, key, given: bool, words: &str| {
             if self.law == law && !given {
                 faults.push((key, f64::NAN, format!("is missing: {words}")));

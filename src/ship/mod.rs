@@ -5,6 +5,7 @@ pub mod actuator;
 mod craft;
 pub mod parameter;
 pub mod particulars;
+pub(crate) mod rudder;
 pub mod state;
 pub mod units;
 

@@ -334,10 +334,9 @@ fn sources(
         let blank = Default::default();
         sources.insert(0, Source { channel, field: None, constant: 0.0, label, unit, scale: 1.0, offset: 0.0, blank });
     }
-    for channel in [Channel::T].into_iter().chain(map.driven.needs()) {
-        if sources.iter().any(|s| s.channel == channel || Some(s.channel) == channel.ordered()) {
-            continue;
-        }
+    let has = |channel: Channel| sources.iter().any(|s| s.channel == channel);
+    let clock = (!has(Channel::T)).then_some(Channel::T);
+    if let Some(channel) = clock.into_iter().chain(map.driven.missing(has)).next() {
         if map.columns.is_some() {
             let text = format!(
                 "[columns] has no entry for channel `{channel}` ({}), which every run needs, and the file no column of that name and a fitting unit",

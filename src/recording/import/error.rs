@@ -1,7 +1,14 @@
 //! Why files could not be imported: where, what is wrong, and what to do next.
 //! Doubts that do not hinder an import are notes of the result, not errors.
 
+use crate::recording::Channel;
 use std::path::PathBuf;
+
+/// The option that names the column of an input.
+pub(super) fn flag(input: Channel) -> String {
+    let option = if matches!(input, Channel::Command(_)) { "--actuator" } else { "--column" };
+    format!("{option} {input}=NAME")
+}
 
 /// Why files could not be imported.
 #[derive(Debug, thiserror::Error)]

@@ -4,7 +4,7 @@
 use super::columns::actuators::by_names;
 use super::columns::choose::Choices;
 use super::columns::log::{Clock, Column, Log, Meaning};
-use super::error::ImportError;
+use super::error::{ImportError, flag};
 use super::formats::clock::written;
 use super::formats::passes::FEW;
 use crate::recording::Channel;
@@ -107,8 +107,7 @@ fn lacks(log: &Log, choices: &Choices) -> Option<Channel> {
         of_actuators.values().any(|c| *c == channel)
             || log.columns.iter().any(|c| choices.meaning(c) == Some(Meaning::Channel(channel)))
     };
-    let needed = std::iter::once(Channel::Psi).chain(driven.needs());
-    needed.into_iter().find(|c| !has(*c) && !c.ordered().is_some_and(has))
+    (!has(Channel::Psi)).then_some(Channel::Psi).or_else(|| driven.missing(has).next())
 }
 
 fn refusal(first: &Log, second: &Log, column: &str, from: f64, lacking: Option<Channel>) -> ImportError {
@@ -120,10 +119,10 @@ fn refusal(first: &Log, second: &Log, column: &str, from: f64, lacking: Option<C
         format!("{a} and {b} both have `{column}` over the same time, from {from} on, and not the same")
     };
     let reason = lacking.map_or(String::new(), |c| {
-        let flag = if matches!(c, Channel::Command(_)) { "--actuator" } else { "--column" };
         format!(
-            "; neither is a recording by itself, since no column is the {} (name it with `{flag} {c}=NAME` where one is)",
-            c.info().words
+            "; neither is a recording by itself, since no column is the {} (name it with `{}` where one is)",
+            c.info().words,
+            flag(c)
         )
     });
     ImportError::Choice(format!(

@@ -6,7 +6,7 @@ use super::columns::fills::take_out;
 use super::columns::log::{Clock, Log, Meaning};
 use super::columns::names::meaning;
 use super::columns::take::{Signals, Taken, needed, take};
-use super::error::ImportError;
+use super::error::{ImportError, flag};
 use super::formats::clock::written;
 use super::formats::read::read;
 use super::overlap::{range, shifts};
@@ -203,13 +203,11 @@ fn question(words: &str, flags: &str) -> String {
     format!("no column is {words}: name it with `{flags}`")
 }
 
-/// The questions for the inputs of the craft that are not there.
+/// The questions for the inputs of the craft that are not there, the rudder first.
 fn inputs_missing(has: impl Fn(Channel) -> bool, driven: &Driven) -> Vec<String> {
-    let helm = (driven.rudder && !has(Channel::Delta)).then(|| question("the rudder angle", "--column delta=NAME"));
-    let shaft = (driven.propeller && !has(Channel::N)).then(|| question("the propeller rate", "--column n=NAME"));
-    let commands = driven.commands.iter().filter(|c| !has(**c) && !c.ordered().is_some_and(&has));
-    let of_actuators = commands.map(|c| question(&format!("the {}", c.info().words), &format!("--actuator {c}=NAME")));
-    helm.into_iter().chain(shaft).chain(of_actuators).collect()
+    let mut inputs: Vec<Channel> = driven.missing(has).collect();
+    inputs.sort_by_key(|c| *c != Channel::Delta);
+    inputs.into_iter().map(|c| question(&format!("the {}", c.info().words), &flag(c))).collect()
 }
 
 /// The columns that a question for one can be answered with.

@@ -7,6 +7,7 @@ use super::resistance::{form_factor, friction, wetted_surface};
 use super::screw::quadratic;
 use super::sheet::{Sheet, at, number, rounded};
 use super::write::ship_text;
+use crate::ship::rudder::{induced_force, normal_slope};
 use crate::ship::{Ship, ShipError};
 use crate::units::GRAVITY;
 use std::f64::consts::PI;
@@ -284,8 +285,8 @@ fn rudder_curves(sheet: &mut Sheet<'_>, block: f64) {
         sheet.entries.iter().find(|e| e.key == key).and_then(|e| number(&e.value)).unwrap_or(1.0)
     };
     let aspect = read(sheet, "rudder.span").powi(2) / read(sheet, "rudder.area");
-    let slope = 6.13 * aspect / (aspect + 2.25);
-    let pull = 1.0 + (0.627 * block - 0.153).max(0.0);
+    let slope = normal_slope(aspect);
+    let pull = 1.0 + induced_force(block).max(0.0);
     let normal = "f_a = 6.13 A/(A + 2.25) of Fujii for the aspect ratio A";
     let lift = slope * pull;
     let source = format!("(1 + a_H) f_a, {normal}; a_H = 0.627 C_b - 0.153 of Kijima 1990");

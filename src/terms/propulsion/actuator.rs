@@ -373,11 +373,12 @@ impl ActuatorTerm {
     /// Whether a parameter is free in a model that says nothing of it: gains, which no particulars give, and a lag that is to be
     /// estimated.
     pub fn free_at_first(actuator: &Actuator, parameter: &str) -> bool {
-        match parameter {
-            "lag" => matches!(actuator.lag, Some(Lag::Word(_))),
-            "slope" => actuator.law == Law::Foil,
-            gain => gain.starts_with("gain"),
-        }
+        Self::is_gain(parameter) || parameter == "lag" && matches!(actuator.lag, Some(Lag::Word(_)))
+    }
+
+    /// Whether a parameter multiplies the whole push: a gain, or the slope of a foil.
+    pub fn is_gain(parameter: &str) -> bool {
+        parameter == "slope" || parameter.starts_with("gain")
     }
 
     /// Whether a parameter is one of a law that particulars give no more than roughly: it is estimated along, with its spread as prior.

@@ -2,7 +2,7 @@
 //! term `flow`, whose formulas these are.
 
 use crate::parameter::ParameterInfo;
-use crate::physics::flow::{ahead, thrust};
+use crate::physics::flow::{ahead, index, thrust};
 use crate::physics::{Flow, Instant};
 use trimtab_ad::Scalar;
 
@@ -17,17 +17,7 @@ pub(in crate::terms) struct Screw {
     pub rate: usize,
 }
 
-/// Indices of the parameters that thrust depends on, in those of the actuator.
-mod index {
-    pub const WAKE: usize = 0;
-    pub const THRUST_DEDUCTION: usize = 1;
-    pub const KT0: usize = 2;
-    pub const KT1: usize = 3;
-    pub const KT2: usize = 4;
-    pub const ASTERN: usize = 5;
-}
-
-/// The parameters of a propeller; an actuator's own values are those of its entry in the ship file.
+/// The parameters of a propeller, in the order of the first ones of the term `flow`; an actuator's own values are those of its entry in the ship file.
 pub(super) const PARAMETERS: [ParameterInfo; 6] = [
     ParameterInfo::new("wake", "w", "-", "effective wake fraction").scale(|_| 0.05).spread(|_| 0.08).bounds(0.0, 0.9),
     ParameterInfo::new("thrust_deduction", "t", "-", "thrust deduction, thrust ahead")

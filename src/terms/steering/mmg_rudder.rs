@@ -7,16 +7,16 @@ use crate::physics::Flow;
 use crate::physics::{Group, Instant, Physics, Reach, Term, TermInfo};
 use crate::physics::{Validity, degrees};
 use crate::ship::Ship;
+use crate::ship::rudder::{induced_force, normal_slope, steering_deduction};
 use crate::state::Force;
 use trimtab_ad::{Scalar, smooth};
 
 /// Rudder of the standard MMG method.
 pub struct MmgRudder;
 
-/// Fujii's slope 6.13 A/(A + 2.25) at the aspect ratio A = H_R^2/A_R.
+/// Fujii's slope at the aspect ratio A = H_R^2/A_R.
 fn fujii(s: &Ship) -> f64 {
-    let aspect = s.rudder.span * s.rudder.span / s.rudder.area;
-    6.13 * aspect / (aspect + 2.25)
+    normal_slope(s.rudder.span * s.rudder.span / s.rudder.area)
 }
 
 static INFO: TermInfo = TermInfo {
@@ -40,12 +40,12 @@ static INFO: TermInfo = TermInfo {
             .spread(|_| 0.3)
             .bounds(0.0, 10.0),
         ParameterInfo::new("t_R", "t_R", "-", "steering resistance deduction")
-            .in_mmg(Start::Own(|s| 0.45 - 0.28 * s.hull.block_coefficient))
+            .in_mmg(Start::Own(|s| steering_deduction(s.hull.block_coefficient)))
             .scale(|_| 0.1)
             .spread(|_| 0.15)
             .bounds(-1.0, 1.0),
         ParameterInfo::new("a_H", "a_H", "-", "hull force induced by the rudder, over that of the rudder")
-            .in_mmg(Start::Own(|s| 0.627 * s.hull.block_coefficient - 0.153))
+            .in_mmg(Start::Own(|s| induced_force(s.hull.block_coefficient)))
             .scale(|_| 0.1)
             .spread(|_| 0.15)
             .bounds(-0.5, 2.0),
