@@ -19,6 +19,7 @@ use crate::likelihood::noise::Noise;
 use crate::model::Model;
 use crate::ranges::Limited;
 use crate::ranks::Ranks;
+use crate::recording::audit::settled;
 use crate::recording::{Run, Runs};
 use crate::uncertainty::Uncertainty;
 use crate::validity::{self, Count, Coverage};
@@ -253,6 +254,8 @@ fn by_likelihood(
     if read.len() < runs.len() {
         return Err(FitError::Unreadable);
     }
+    // What a receiver did that no ship can is no motion to be likely, in a fit as in a diagnosis.
+    let read = settled(read, model.ship.hull.lpp).0;
     let all = with_uncertain_coefficients(model);
     let cost = Cost::over(ranks, &all, &read[..], settings.cost_options())?;
     check_ranks(&cost)?;

@@ -155,10 +155,25 @@ fn weights(left_out: Option<usize>) -> [f64; 2 * SIDE] {
     std::array::from_fn(|i| (0..4).map(|j| row[j] * a[(i, j)]).sum())
 }
 
+/// The part of a step between the two middle samples that a late fix cannot be: the step less what lies along the course, as far
+/// as that is no longer than the way of one sample period. `rows` are the samples about it.
+fn not_late(rows: &[[f64; STATES]], step: [f64; 2]) -> f64 {
+    let (first, last) = (&rows[0], &rows[rows.len() - 1]);
+    let way: [f64; 2] = std::array::from_fn(|c| (last[c] - first[c] - step[c]) / (rows.len() - 1) as f64);
+    let length = way[0].hypot(way[1]);
+    if length == 0.0 {
+        return step[0].hypot(step[1]);
+    }
+    let along = (step[0] * way[0] + step[1] * way[1]) / length;
+    let across = (step[0] * way[1] - step[1] * way[0]) / length;
+    (along.abs() - length).max(0.0).hypot(across)
+}
+
 /// Jumps of the position, run by run.
 ///
 /// A step counts where it stands out from those of all runs, whose spread is what noise and manoeuvres make, and is longer than
-/// the ship could have been carried.
+/// the ship could have been carried. A fix may be late by up to a sample period; a step along the course counts only by what
+/// exceeds the way of one period.
 pub fn jumps(runs: &[Run], length: f64) -> Vec<Vec<Jump>> {
     let all = weights(None);
     let without: [[f64; 2 * SIDE]; 2 * SIDE] = std::array::from_fn(|i| weights(Some(i)));
@@ -197,7 +212,8 @@ pub fn jumps(runs: &[Run], length: f64) -> Vec<Vec<Jump>> {
         for (i, s) in steps.iter().enumerate() {
             let jump = Jump { sample: i + SIDE, length: s[0].hypot(s[1]) };
             let rows = &rows[i..i + 2 * SIDE];
-            if jump.length.is_nan() || jump.length <= least || !stays(rows, 0.5 * jump.length) {
+            let beyond = jump.length.is_finite() && not_late(rows, *s) > least;
+            if !beyond || !stays(rows, 0.5 * jump.length) {
                 continue;
             }
             match out.last_mut() {
@@ -308,6 +324,27 @@ mod tests {
         assert!(after.initial.map(Some) == after.measured[0] && after.inputs[0].t == before.inputs[69].t + before.dt);
         assert_eq!(issues.len(), 1);
         assert!(issues[0].fault == "jump" && !issues[0].blocking() && issues[0].text.contains("run 3"), "{issues:?}");
+    }
+
+    #[test]
+    fn a_fix_late_by_less_than_a_sample_is_no_jump_and_one_across_the_course_is() {
+        let mut runs = circles();
+        for run in &mut runs {
+            let truth = run.measured.clone();
+            // A tenth of the fixes, and in one run all from a sample on, are 0.9 periods old.
+            let late = |k: usize| k.is_multiple_of(10) || (run.name == "run 2" && k >= 60);
+            for k in (1..truth.len()).filter(|k| late(*k)) {
+                for c in 0..2 {
+                    run.measured[k][c] = Some(0.1 * or_nan(&truth[k])[c] + 0.9 * or_nan(&truth[k - 1])[c]);
+                }
+            }
+        }
+        assert!(jumps(&runs, LENGTH).iter().all(Vec::is_empty), "{:?}", jumps(&runs, LENGTH));
+        // As far, to the side: the ship sails along x at the start of a circle.
+        for m in &mut runs[3].measured[5..] {
+            m[1] = m[1].map(|y| y + 0.18);
+        }
+        assert_eq!(jumps(&runs, LENGTH).iter().map(Vec::len).collect::<Vec<_>>(), [0, 0, 0, 1, 0, 0, 0, 0]);
     }
 
     #[test]
