@@ -268,7 +268,7 @@ fn units() -> Vec<Mistake> {
             "rps as rpm",
             |s| renamed(s, "n [rps]", "n [rpm]"),
             CHECK,
-            &["(channel n)", "the column is in rps and was declared rpm", "check `unit` of n"],
+            &["(channel n)", "the column is in rps and was declared rpm", "scale = 60", "check the unit of n"],
             |s| columns(s, "n = { unit = \"rps\" }"),
         ),
         in_file(

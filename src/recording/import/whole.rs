@@ -3,6 +3,7 @@
 
 use super::columns::choose::{Choices, Chosen, Unused, choose};
 use super::columns::fills::take_out;
+use super::columns::held::release;
 use super::columns::log::{Clock, Log, Meaning};
 use super::columns::names::meaning;
 use super::columns::take::{Signals, Taken, needed, take};
@@ -81,7 +82,10 @@ pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, 
     for file in files {
         logs.extend(read(file, &settings.choices)?);
     }
-    logs.iter_mut().for_each(|log| blank_fills(log, &settings.choices));
+    for log in &mut logs {
+        blank_fills(log, &settings.choices);
+        release(log, |column| settings.choices.meaning(column));
+    }
     refuse_texts(&logs, &settings.choices)?;
     let shifts = shifts(&logs, &settings.choices).map_err(|error| with_texts(error, &logs))?;
     for (log, shift) in logs.iter_mut().zip(&shifts) {
@@ -374,7 +378,7 @@ impl Imported {
         let core = [T, X, Y, Psi, U, V, R, N, Delta];
         let all: BTreeSet<Channel> =
             self.recordings.iter().flat_map(|r| r.rows.channels.iter().map(|(c, _)| *c)).collect();
-        for channel in all {
+        for channel in all.iter().copied() {
             let of = |r: &ImportedRecording, c: Channel| {
                 r.rows.channels.iter().find(|(other, _)| *other == c).map(|(_, v)| v.clone())
             };
@@ -396,8 +400,11 @@ impl Imported {
                 self.recordings.iter_mut().for_each(|r| r.rows.channels.retain(|(c, _)| *c != channel));
                 let partner = partner.map_or("", Channel::name);
                 self.notes.push(format!("{channel} is left out: without {partner} it says nothing"));
-            } else if sparse {
-                self.leave_out.push(channel);
+            } else if sparse && !self.leave_out.contains(&channel) {
+                // The other half of a pair says nothing by itself.
+                let other = partner.filter(|p| all.contains(p) && !core.contains(p));
+                self.leave_out.extend([Some(channel), other].into_iter().flatten());
+                let channel = other.map_or(channel.to_string(), |other| format!("{channel}, and with it {other},"));
                 self.notes.push(format!(
                     "{channel} is in the recordings and not used: it is missing in {absent} of {rows} rows, each of which would end a run (`leave_out` in columns.toml)"
                 ));

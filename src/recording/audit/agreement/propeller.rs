@@ -47,9 +47,15 @@ fn doubt(ratio: f64, ship: &Ship) -> Issue {
     let [low, high] = SAILED;
     let fits =
         |(factor, _): &&(f64, &str)| (RATIO_INSIDE[0] * low..=RATIO_INSIDE[1] * high).contains(&(ratio * factor));
-    let meaning = UNITS.iter().find(fits).map_or(String::new(), |(_, meaning)| format!(": {meaning}"));
+    let unit = UNITS.iter().find(fits);
+    let meaning = unit.map_or(String::new(), |(_, meaning)| format!(": {meaning}"));
     let text = format!("the advance ratio u / (n D) is {} in the median{meaning}", sig(ratio, 2));
-    let next = format!("check `unit` of n in a column map, and D = {} m in the ship file", ship.propeller.diameter);
+    // Whatever unit the file states, a factor corrects it.
+    let scale = unit.map_or(String::new(), |(factor, _)| {
+        format!("`n = {{ scale = {} }}` in a column map corrects it; otherwise ", sig(factor.recip(), 5))
+    });
+    let diameter = ship.propeller.diameter;
+    let next = format!("{scale}check the unit of n, and D = {diameter} m in the ship file");
     Issue::new(Severity::Warning, "advance_ratio", text, next).of(Channel::N)
 }
 

@@ -93,6 +93,25 @@ impl<'c> Pool<'c> {
         coefficients(&self.sum, self.has(curve).then(|| curve.at_zero()))
     }
 
+    /// Squares that the errors of the coefficients of the others make in a run on average, `tr(Cov A)` with A its sums of products of the
+    /// channel's own columns: where the channel only jitters in the others, they do not say what it does. `usual` is what is left of a window;
+    /// windows overlap, so that these are worth fewer samples.
+    fn unsure(&self, curve: &Curve, usual: f64) -> Option<f64> {
+        let n = self.sum.response.len();
+        let less = self.has(curve).then(|| curve.at_zero());
+        let of = |i: usize, j: usize| self.sum.columns[i * n + j] - less.map_or(0.0, |l| l.columns[i * n + j]);
+        let scale = DVector::from_fn(n, |i, _| if of(i, i) > 0.0 { of(i, i).sqrt().recip() } else { 0.0 });
+        let scaled = DMatrix::from_fn(n, n, |i, j| of(i, j) * scale[i] * scale[j] + f64::from(u8::from(i == j)) * 1e-9);
+        let inverse = scaled.cholesky()?.inverse();
+        let own = curve.own.min(n);
+        let products = &curve.at_zero().columns;
+        let trace: f64 = (0..own)
+            .flat_map(|i| (0..own).map(move |j| (i, j)))
+            .map(|(i, j)| inverse[(i, j)] * scale[i] * scale[j] * products[j * n + i])
+            .sum();
+        Some(usual * curve.rows / curve.samples * trace)
+    }
+
     /// What the coefficients of the others usually leave of a run, squared and by window; `None` where they leave nothing.
     pub(in crate::recording::audit) fn usual(&self) -> Option<f64> {
         let square = |c: &Curve| Some(c.at_zero().left(&self.others(c)?) / c.rows);
@@ -117,7 +136,11 @@ pub(in crate::recording::audit) fn odd(
     let judged = |run: usize| {
         let curve = alike(run)?;
         let others = pool.others(curve)?;
-        let unanswered = || is_unanswered(curve, &others, usual?).then_some(Odd::Unanswered);
+        let unanswered = || {
+            let usual = usual?;
+            let unsure = pool.unsure(curve, usual)?;
+            is_unanswered(curve, &others, usual, unsure).then_some(Odd::Unanswered)
+        };
         let found = judged(curve, &others, &worth).or_else(unanswered)?;
         sources.agree(run, |other| losses(alike(other)?, &others, found)).then_some(found)
     };
@@ -159,11 +182,11 @@ pub(in crate::recording::audit) fn shares_at_best(curves: &[Option<&Curve>], poo
 }
 
 /// Whether a run by itself shows no effect of the channel, and is explained better without it than with its effect in the other runs,
-/// which leaves more than usual.
-fn is_unanswered(curve: &Curve, others: &[f64], usual: f64) -> bool {
+/// which leaves more than usual. `usual` is what is left of a window, `unsure` the squares by which the effect in the others is not known.
+fn is_unanswered(curve: &Curve, others: &[f64], usual: f64, unsure: f64) -> bool {
     let sums = curve.at_zero();
     let (as_it_is, nothing) = (sums.left(others), sums.left_without(curve.own, others));
-    let usual = usual * curve.rows;
+    let usual = usual * curve.rows + unsure;
     let evidence = curve.samples * (as_it_is - nothing) / nothing.max(usual);
     curve.side().abs() < POOLED_EVIDENCE && as_it_is > POOLED_UNUSUAL * usual && evidence > SCALE_EVIDENCE
 }

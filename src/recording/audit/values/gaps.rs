@@ -106,6 +106,10 @@ fn columns(recording: &Recording, issues: &mut Vec<Issue>) {
     for column in unused {
         let absent = CHANNELS.iter().filter(|c| !recording.has(c.channel)).map(|c| c.name);
         let name = name(column).to_lowercase();
+        // A column of a channel's own name is left out by the column map.
+        if CHANNELS.iter().any(|c| c.name == name) {
+            continue;
+        }
         let near = if name.len() > 2 { suggestion(&name, absent) } else { String::new() };
         if near.is_empty() {
             others.push(format!("`{column}`"));

@@ -5,6 +5,7 @@ use super::log::{Column, Meaning};
 use super::motion::{Track, ratio, rudder_effect};
 use super::signal::{Signal, size_below};
 use crate::recording::{Channel, Quantity};
+use std::f64::consts::FRAC_PI_2;
 
 /// What is known of the motion while columns are chosen.
 #[derive(Default)]
@@ -19,8 +20,6 @@ pub struct Sight {
 const NEAR: f64 = 0.15;
 /// Coherence from which a ratio of speeds means something.
 const COHERENT: f64 = 0.6;
-/// Any heading or course above this is no radian.
-const MOST_RADIANS: f64 = 7.0;
 /// t value of a rudder's effect that counts half: twice that from which its sign is determined.
 const HALF_T: f64 = 10.0;
 
@@ -36,11 +35,15 @@ impl Sight {
         }
     }
 
-    /// Length of the mean of the direction from the course, in either sense.
+    /// Mean cosine of the angle between the direction and the course: a heading that counts from elsewhere than north is steadily off it.
+    /// A direction that is counted anticlockwise may begin at any quarter.
     fn direction(&self, columns: &[&Column]) -> Option<f64> {
         let track = self.track.as_ref()?;
-        let signal = heading(columns);
-        [1.0, -1.0].into_iter().filter_map(|sense| track.agreement(&signal, sense)).map(|a| a[0]).reduce(f64::max)
+        let signal = heading(columns, Some(track));
+        let along = |[length, angle]: [f64; 2]| length * angle.cos().max(0.0);
+        let quarter = |[length, angle]: [f64; 2]| length * (angle - (angle / FRAC_PI_2).round() * FRAC_PI_2).cos();
+        let clockwise = track.agreement(&signal, 1.0).map(along);
+        [clockwise, track.agreement(&signal, -1.0).map(quarter)].into_iter().flatten().reduce(f64::max)
     }
 
     /// Whether the track is as fast as the column says in the unit that the file states, or in any where it states none.
@@ -76,11 +79,15 @@ impl Sight {
     }
 }
 
-/// Columns as a heading: degrees by their size, or by the unit that is stated.
-pub fn heading(columns: &[&Column]) -> Signal {
-    let degree = Quantity::Angle.factor("deg").unwrap_or(1.0);
+/// Columns as a heading \[rad\].
+pub fn heading(columns: &[&Column], track: Option<&Track>) -> Signal {
+    Signal::new(columns, heading_unit(columns, track), 0.0, true).0
+}
+
+/// SI value of one of a heading's: the unit in which it goes with the track, or by its size, or as stated.
+pub fn heading_unit(columns: &[&Column], track: Option<&Track>) -> f64 {
     let top = columns.iter().map(|c| size_below(&c.v, 0.999)).fold(0.0, f64::max);
     let stated = columns.iter().find_map(|c| Quantity::Angle.factor(c.unit.as_deref()?));
-    let factor = if top > MOST_RADIANS { degree } else { stated.unwrap_or(1.0) };
-    Signal::new(columns, factor, 0.0, true).0
+    let unit = Track::unit_of_direction(track, |factor| Signal::new(columns, factor, 0.0, true).0, top);
+    unit.map(|u| u.factor).or(stated).unwrap_or(1.0)
 }

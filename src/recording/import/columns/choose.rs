@@ -336,7 +336,7 @@ fn look(sight: &mut Sight, meaning: Meaning, chosen: &Chosen<'_>, choices: &Choi
             let signal = |columns| Signal::new(columns, 1.0, 0.0, false).0;
             sight.track = x.zip(y).and_then(|(x, y)| Track::of(&signal(x), &signal(y)));
         }
-        Meaning::Channel(Channel::Psi) => sight.psi = of(meaning).map(heading),
+        Meaning::Channel(Channel::Psi) => sight.psi = of(meaning).map(|columns| heading(columns, sight.track.as_ref())),
         _ => {}
     }
 }

@@ -2,7 +2,7 @@
 //! track, rudder against the turn. What the data do not show is asked for, with the flag to pass.
 
 use super::log::{Column, Meaning};
-use super::motion::{Track, ratio, rudder_effect};
+use super::motion::{AGREE, MOST_RADIANS, Track, ratio, rudder_effect};
 use super::names::is_magnetic;
 use super::signal::{Signal, size_below};
 use crate::numerals::sig;
@@ -80,19 +80,15 @@ const FAR: f64 = 5.0;
 const COHERENT: f64 = 0.6;
 /// A steady angle of course and heading that is reported \[rad\]: 3 deg, above the error of a gyrocompass under way (1 to 2 deg).
 const STEADY: f64 = 0.052;
-/// A heading goes with the course within this angle on the mean of a log \[rad\]: 14 deg, more than drift, current and variation mostly make.
-const ALONG: f64 = 0.25;
-/// Directions agree.
-const AGREE: f64 = 0.8;
 /// t value of the rudder's effect from which its sign is determined.
 const RUDDER_T: f64 = 5.0;
-/// Any heading or course above this is no radian.
-const MOST_RADIANS: f64 = 7.0;
 /// Any rudder angle above this is no radian.
 const MOST_RUDDER: f64 = 1.6;
 /// A rate above the first is rpm, one below the second rps.
 const RPM_ABOVE: f64 = 25.0;
 const RPS_BELOW: f64 = 6.0;
+/// No propeller drives a ship at less than this \[rps\]: the largest turn at one in a second at service speed, and a third of that in port.
+const SLOWEST: f64 = 0.2;
 
 /// The words of the question for a unit that nothing shows.
 pub fn ask(meaning: Meaning, column: &str, choices: &str) -> String {
@@ -135,33 +131,22 @@ pub fn direction(
     known: &Known,
 ) -> Result<Verdict, String> {
     let name = columns.first().map_or("", |c| c.name.as_str());
-    let degree = Quantity::Angle.factor("deg").unwrap_or(1.0);
     let agreement = |factor: f64, sense: f64| {
         let signal = Signal::new(columns, factor, 0.0, true).0;
         known.track.as_ref().and_then(|track| track.agreement(&signal, sense))
     };
     let top = largest(columns);
-    let length =
-        |factor| [1.0, -1.0].map(|s| agreement(factor, s).map_or(0.0, |a| a[0])).into_iter().fold(0.0, f64::max);
-    let along = |factor| agreement(factor, 1.0).is_some_and(|[length, off]| length > AGREE && off.abs() < ALONG);
-    // A heading that counts on through full turns has large values in radians, too: where the file says so, the track is asked.
-    let counted_on =
-        |given: &Given| (given.factor - 1.0).abs() < 1e-6 && length(1.0) > AGREE && length(1.0) > length(degree);
-    let (unit, factor, why) = match given {
-        Some(given) if given.by_user || counted_on(given) => (given.unit.as_str(), given.factor, String::new()),
-        _ if top > MOST_RADIANS => ("deg", degree, format!("values up to {}", sig(top, 4))),
-        given => {
-            let (deg, rad) = (length(degree), length(1.0));
-            let says = |unit| format!("values up to {}; the track goes that way in {unit}", sig(top, 3));
-            match given {
-                _ if deg > AGREE && deg > rad + 0.1 => ("deg", degree, says("degrees")),
-                _ if rad > AGREE && rad > deg + 0.1 => ("rad", 1.0, says("radians")),
-                Some(given) => (given.unit.as_str(), given.factor, String::new()),
-                None if along(1.0) && !along(degree) => ("rad", 1.0, says("radians")),
-                None if along(degree) && !along(1.0) => ("deg", degree, says("degrees")),
-                None => return Err(ask(meaning, name, "deg or rad")),
-            }
+    let raw = |factor: f64| Signal::new(columns, factor, 0.0, true).0;
+    let shown = Track::unit_of_direction(known.track.as_ref(), raw, top);
+    let (unit, factor, why) = match (given, shown) {
+        (Some(given), _) if given.by_user => (given.unit.as_str(), given.factor, String::new()),
+        (_, Some(shown)) => {
+            let (unit, words) = if shown.factor == 1.0 { ("rad", "radians") } else { ("deg", "degrees") };
+            let by_track = if shown.by_track { format!("; the track goes that way in {words}") } else { String::new() };
+            (unit, shown.factor, format!("values up to {}{by_track}", sig(top, 3)))
         }
+        (Some(given), None) => (given.unit.as_str(), given.factor, String::new()),
+        (None, None) => return Err(ask(meaning, name, "deg or rad")),
     };
     let agrees = given.is_some_and(|g| g.by_user || (g.factor / factor - 1.0).abs() < 1e-6);
     let mut verdict = match given {
@@ -170,12 +155,6 @@ pub fn direction(
     };
     if is_magnetic(name) {
         bring_to_true(&mut verdict, meaning, known);
-    }
-    if meaning == Meaning::Channel(Channel::Psi) {
-        let heading = Signal::new(columns, factor, verdict.offset, true).0;
-        let steady = known.track.as_ref().and_then(|track| track.steady_angle(&heading));
-        let warning = steady.filter(|angle| angle.abs() > STEADY).map(steady_words);
-        verdict.doubt = [verdict.doubt.take(), warning].into_iter().flatten().reduce(|a, b| format!("{a}; {b}"));
     }
     if let (Some([right, _]), Some([mirrored, turned])) = (agreement(factor, 1.0), agreement(factor, -1.0)) {
         let degrees = |angle: f64| sig(angle.to_degrees(), 3);
@@ -196,6 +175,12 @@ pub fn direction(
         } else if right > AGREE {
             verdict.evidence += "; turns as the track does: clockwise from north";
         }
+    }
+    if meaning == Meaning::Channel(Channel::Psi) {
+        let heading = Signal::new(columns, verdict.factor, verdict.offset, true).0;
+        let steady = known.track.as_ref().and_then(|track| track.steady_angle(&heading));
+        let warning = steady.filter(|angle| angle.abs() > STEADY).map(steady_words);
+        verdict.doubt = [verdict.doubt.take(), warning].into_iter().flatten().reduce(|a, b| format!("{a}; {b}"));
     }
     Ok(verdict)
 }
@@ -220,7 +205,7 @@ fn bring_to_true(verdict: &mut Verdict, meaning: Meaning, known: &Known) {
 /// The warning about a steady angle from heading to course \[rad\].
 fn steady_words(angle: f64) -> String {
     format!(
-        "the course is {} deg off the heading on straights in opposite directions, which no current or wind explains: a magnetic compass, or one that is not aligned; `psi = {{ offset = {} }}` (rad) in [columns] of columns.toml takes it out",
+        "the course is {} deg off the heading on all headings alike, which no current explains: a magnetic compass, or one that is not aligned; `psi = {{ offset = {} }}` (rad) in [columns] of columns.toml takes it out",
         sig(angle.to_degrees(), 3),
         sig(angle, 4)
     )
@@ -325,11 +310,12 @@ pub fn rudder(meaning: Meaning, columns: &[&Column], given: Option<&Given>, know
         let (low, high) = psi.v.iter().fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
         high - low
     });
+    // Hardly any ship turns half round with less than a degree and a half of rudder.
+    let too_little = top <= MOST_RUDDER && turned > 3.0;
     let mut verdict = match given {
         Some(given) if given.by_user || given.factor < 0.5 || top <= MOST_RUDDER => as_given(given, ""),
         given if top > MOST_RUDDER => by_data("deg", degree, format!("angles up to {}", sig(top, 3)), given),
-        // A ship that turns half round with less than a degree and a half of rudder does not use degrees.
-        given if turned > 3.0 => {
+        given if too_little => {
             let why = format!("angles up to {} turn the ship through {} deg", sig(top, 3), sig(turned.to_degrees(), 3));
             by_data("rad", 1.0, why, given)
         }
@@ -357,6 +343,16 @@ pub fn rudder(meaning: Meaning, columns: &[&Column], given: Option<&Given>, know
             verdict.doubt =
                 Some("the recordings do not determine its sign: positive must turn the ship to starboard".to_owned());
         }
+    }
+    if let Some(given) = given.filter(|g| !g.by_user && g.factor < 0.5 && too_little) {
+        let doubt = format!(
+            "the file says {}, and {} of them turn the ship through {} deg: if the values are radians, pass `--unit {}=rad`",
+            given.unit,
+            sig(top, 3),
+            sig(turned.to_degrees(), 3),
+            meaning.name()
+        );
+        verdict.doubt = Some(verdict.doubt.take().map_or(doubt.clone(), |sign| format!("{doubt}; {sign}")));
     }
     Ok(verdict)
 }
@@ -399,6 +395,17 @@ pub fn rotation(
         verdict.evidence += "; the ship goes ahead with negative ones: turned";
     }
     let factor = verdict.factor.abs();
+    if let Some(given) = given.filter(|g| !g.by_user)
+        && top > 0.0
+        && top * factor < SLOWEST
+    {
+        verdict.doubt = Some(format!(
+            "{} {} is little for a ship's propeller: if the values are revolutions per second, pass `--unit {}=rps`",
+            sig(top, 3),
+            given.unit,
+            meaning.name()
+        ));
+    }
     if top * factor > 7.0 && top * factor < 60.0 {
         let rpm = sig(top * factor * 60.0, 3);
         verdict.doubt = Some(format!(

@@ -2,12 +2,16 @@
 //! They are taken out before any unit is determined from the values, and are reported.
 
 use super::log::{Column, Meaning};
-use crate::recording::usual_fill;
+use super::signal::median;
+use crate::recording::{Channel, usual_fill};
 
 /// A fill value is further from all others than their range, this many times.
 const APART: f64 = 3.0;
 /// The same for numbers that nobody writes for anything else.
 const APART_USUAL: f64 = 1.0;
+/// A leap to 360 is no turn from this angle on \[deg\], and from so many usual steps.
+const LEAP: f64 = 10.0;
+const LEAPS: f64 = 10.0;
 /// Kinds of fill values that one column may have.
 const KINDS: usize = 3;
 
@@ -15,7 +19,7 @@ const KINDS: usize = 3;
 pub fn take_out(column: &mut Column, meaning: Option<Meaning>) -> Vec<(f64, usize)> {
     let mut found = Vec::new();
     while found.len() < KINDS
-        && let Some(fill) = fill(&column.v, meaning)
+        && let Some(fill) = fill(&column.v, meaning).or_else(|| north_without_a_course(&column.v, meaning))
     {
         let kept: Vec<bool> = column.v.iter().map(|v| *v != fill).collect();
         found.push((fill, kept.iter().filter(|k| !**k).count()));
@@ -27,6 +31,34 @@ pub fn take_out(column: &mut Column, meaning: Option<Meaning>) -> Vec<(f64, usiz
         keep(&mut column.v);
     }
     found
+}
+
+/// Whether a quantity is one that is set on board.
+fn is_set(meaning: Meaning) -> bool {
+    use Channel::{Command, Delta, DeltaOrder, N, NOrder};
+    matches!(meaning, Meaning::Channel(Delta | DeltaOrder | N | NOrder | Command(_)))
+}
+
+/// 360 exactly, which a receiver writes for a course that it does not know: it is among the values of a direction, and is reached by leaps
+/// from all sides, where north is reached from nearby.
+fn north_without_a_course(values: &[f64], meaning: Option<Meaning>) -> Option<f64> {
+    const FULL: f64 = 360.0;
+    if !meaning.is_some_and(|m| m.wraps() && m != Meaning::Longitude)
+        || values.iter().any(|v| !(0.0..=FULL).contains(v))
+    {
+        return None;
+    }
+    let apart = |a: f64, b: f64| ((a - b).abs() % FULL).min(FULL - (a - b).abs() % FULL);
+    let leaps = |at_full: bool| -> Vec<f64> {
+        values
+            .windows(2)
+            .filter(|v| (v[1] == FULL && v[0] != FULL) == at_full && v[0] != FULL)
+            .map(|v| apart(v[0], v[1]))
+            .collect()
+    };
+    let (to_full, usual) = (leaps(true), leaps(false));
+    let leap = median(to_full.clone()).filter(|_| to_full.len() > 1)?;
+    (leap > LEAP && leap > LEAPS * median(usual)?).then_some(FULL)
 }
 
 /// The largest or the smallest value, where it stands for a missing one; the further of the two first.
@@ -51,8 +83,8 @@ fn stands_apart(sorted: &[f64], candidate: f64, meaning: Option<Meaning>) -> boo
     // Directions from 0 to 360, but for one other number; a heading that counts turns passes through many.
     let within = most > 7.0 && least >= 0.0 && most <= 360.0;
     let beside = turns && within && count > 1 && !(0.0..=360.0).contains(&candidate);
-    // What is set, such as a propeller, may be switched from one value to another far away.
-    let moves = turns || matches!(meaning, Some(Meaning::GroundSpeed | Meaning::VelocityNorth | Meaning::VelocityEast));
+    // What is set, such as a propeller, may be switched from one value to another far away, and so may a column of which nothing is known.
+    let moves = meaning.is_some_and(|m| !is_set(m));
     let usual = usual_fill(candidate) && apart > APART_USUAL * range;
     beside || usual || (moves && count > 1 && apart > APART * range)
 }
@@ -60,7 +92,6 @@ fn stands_apart(sorted: &[f64], candidate: f64, meaning: Option<Meaning>) -> boo
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::Channel;
 
     fn without(values: &[f64], meaning: Meaning) -> Vec<(f64, usize)> {
         let t = (0..values.len()).map(|i| i as f64).collect();
@@ -80,6 +111,13 @@ mod tests {
             without(&[-20.0, 20.0, -999.0, 9999.0, 0.0], Meaning::Channel(Channel::Delta)),
             [(9999.0, 1), (-999.0, 1)]
         );
+        // An anemometer and a rate of turn that failed.
+        let wind = Meaning::Channel(Channel::WindSpeed);
+        assert_eq!(without(&[5.0, 99.9, 9.0, 15.0, 99.9], wind), [(99.9, 2)]);
+        assert_eq!(without(&[-40.0, 720.0, 30.0, 60.0, 720.0], Meaning::Channel(Channel::R)), [(720.0, 2)]);
+        // A course that is not known, and one that passes north.
+        assert_eq!(without(&[90.0, 91.0, 360.0, 360.0, 92.0, 91.0, 360.0, 93.0], Meaning::Course), [(360.0, 3)]);
+        assert!(without(&[359.0, 360.0, 1.0, 359.5, 360.0, 0.5, 2.0], Meaning::Course).is_empty());
         // A propeller that is switched off.
         assert!(without(&[100.0, 101.0, 0.0, 0.0, 100.0], Meaning::Channel(Channel::N)).is_empty());
         assert!(without(&[35.0, 35.0, 1.0, -1.0, 0.0], Meaning::Channel(Channel::Delta)).is_empty());

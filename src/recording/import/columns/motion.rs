@@ -1,7 +1,7 @@
 //! Rates of signals and how two of them compare: the evidence from which units, signs and senses are determined.
 //! It uses no units; what a ratio means is decided by the caller.
 
-use super::signal::{Signal, median, nearest, size_below};
+use super::signal::{Signal, size_below};
 use crate::recording::local;
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -135,55 +135,103 @@ impl Track {
     }
 }
 
-/// Samples of a straight, at least.
-const STRAIGHT: usize = 10;
-/// A ship goes straight where it turns slower than this share of how fast it turns at most.
-const SLOWLY: f64 = 0.1;
-/// Straights are opposite where their headings are half a turn apart within this \[rad\].
-const OPPOSITE: f64 = 0.5;
+/// Parts of a log by which the error of a steady angle is measured.
+const PARTS: usize = 20;
+/// Standard errors by which a steady angle differs from none.
+const SURE: f64 = 4.0;
+/// Columns of its regression.
+const COLUMNS: usize = 5;
 
 impl Track {
-    /// The steady angle from a heading \[rad\] to the course, on straights in opposite directions, where that of a current or of the wind
-    /// changes its side; `None` where there are no such straights, or where these do not agree on it.
+    /// Which factor brings a direction to radians, 1 or that of degrees: the one in which it goes with the course. A heading that counts on
+    /// through full turns has large values in radians, too; its size decides where the track does not. `None` where neither does.
+    pub fn unit_of_direction(track: Option<&Self>, raw: impl Fn(f64) -> Signal, largest: f64) -> Option<DirectionUnit> {
+        let of = |factor: f64| {
+            let signal = raw(factor);
+            let both = [1.0, -1.0].map(|sense| track.and_then(|track| track.agreement(&signal, sense)));
+            let length = both.iter().flatten().map(|a| a[0]).fold(0.0, f64::max);
+            (length, both[0].is_some_and(|[length, off]| length > AGREE && off.abs() < ALONG))
+        };
+        let ([deg, rad], degree) = ([of(DEGREE), of(1.0)], DEGREE);
+        let sure = |a: (f64, bool), b: (f64, bool)| (a.0 > AGREE && a.0 > b.0 + 0.1) || (a.1 && !b.1);
+        if sure(deg, rad) {
+            Some(DirectionUnit { factor: degree, by_track: true })
+        } else if sure(rad, deg) {
+            Some(DirectionUnit { factor: 1.0, by_track: true })
+        } else {
+            (largest > MOST_RADIANS).then_some(DirectionUnit { factor: degree, by_track: false })
+        }
+    }
+
+    /// The angle from a heading \[rad\] to the course that neither a current nor turning explains; `None` where it is not four standard
+    /// errors from nought.
+    ///
+    /// The velocity of the track to starboard of the heading is regressed on the velocity ahead (its coefficient is the angle), on yaw rate
+    /// and its signed square (drift in turns), and on the starboard components of north and east (a current). The errors are those of
+    /// twenty parts of the log against each other, within which what is left over is alike.
     pub fn steady_angle(&self, heading: &Signal) -> Option<f64> {
+        use nalgebra::{SMatrix, SVector};
+        type Columns = SVector<f64, COLUMNS>;
         let rate = heading.rate(heading.span());
-        let slow = SLOWLY * size_below(&rate.v, 0.95);
-        let mut straights: Vec<(usize, [f64; 4])> = Vec::new();
-        let mut going = false;
-        for i in 0..self.speed.t.len() {
-            let (t, step) = (self.speed.t[i], self.speed.step);
-            let (psi, turning) = (heading.at(t, step), rate.at(t, step).abs());
-            let straight = self.speed.v[i] > 0.4 * self.fast && psi.is_finite() && turning <= slow;
-            if straight {
-                let apart = self.east.v[i].atan2(self.north.v[i]) - psi;
-                let parts = [psi.cos(), psi.sin(), apart.cos(), apart.sin()];
-                match straights.last_mut().filter(|_| going) {
-                    Some((count, sums)) => {
-                        *count += 1;
-                        sums.iter_mut().zip(parts).for_each(|(sum, part)| *sum += part);
-                    }
-                    None => straights.push((1, parts)),
-                }
-            }
-            going = straight;
-        }
-        let means: Vec<[f64; 2]> = straights
-            .into_iter()
-            .filter(|(count, _)| *count >= STRAIGHT)
-            .map(|(_, [c, s, ac, asin])| [s.atan2(c), asin.atan2(ac)])
-            .collect();
-        let mut steady = Vec::new();
-        for (i, a) in means.iter().enumerate() {
-            for b in &means[i + 1..] {
-                if nearest(a[0] - b[0] - PI).abs() < OPPOSITE {
-                    steady.push(a[1] + 0.5 * nearest(b[1] - a[1]));
-                }
+        let mut rows: Vec<(Columns, f64)> = Vec::new();
+        for (i, t) in self.speed.t.iter().enumerate().filter(|(i, _)| self.speed.v[*i] > 0.4 * self.fast) {
+            let (sin, cos) = heading.at(*t, self.speed.step).sin_cos();
+            let turning = rate.at(*t, self.speed.step);
+            let (north, east) = (self.north.v[i], self.east.v[i]);
+            let (ahead, across) = (north * cos + east * sin, east * cos - north * sin);
+            let columns = Columns::from([ahead, turning, turning * turning.abs(), cos, -sin]);
+            if across.is_finite() && columns.iter().all(|c| c.is_finite()) {
+                rows.push((columns, across));
             }
         }
-        let middle = median(steady.clone())?;
-        steady.iter().all(|angle| angle * middle > 0.0 && angle.abs() > 0.5 * middle.abs()).then_some(middle)
+        let per_part = rows.len() / PARTS;
+        if per_part == 0 {
+            return None;
+        }
+        // Each column in units of its size, so that what is small is not taken for what is not there.
+        let size = rows.iter().fold(Columns::zeros(), |sum, (c, _)| sum + c.component_mul(c));
+        let scale = size.map(|s| if s > 0.0 { (rows.len() as f64 / s).sqrt() } else { 0.0 });
+        let mut normal = SMatrix::<f64, COLUMNS, COLUMNS>::zeros();
+        let mut right = Columns::zeros();
+        for (columns, across) in &rows {
+            let columns = columns.component_mul(&scale);
+            normal += columns * columns.transpose();
+            right += columns * *across;
+        }
+        let inverse = normal.try_inverse()?;
+        let found = inverse * right;
+        let mut spread = SMatrix::<f64, COLUMNS, COLUMNS>::zeros();
+        for part in rows.chunks(per_part) {
+            let score = part.iter().fold(Columns::zeros(), |sum, (columns, across)| {
+                let columns = columns.component_mul(&scale);
+                sum + columns * (across - columns.dot(&found))
+            });
+            spread += score * score.transpose();
+        }
+        let few = PARTS as f64 / (PARTS - COLUMNS) as f64;
+        let error = (few * (inverse * spread * inverse)[(0, 0)]).sqrt() * scale[0];
+        let angle = found[0] * scale[0];
+        (angle.is_finite() && angle.abs() > SURE * error).then_some(angle)
     }
 }
+
+/// The unit of a direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DirectionUnit {
+    /// SI value of one.
+    pub factor: f64,
+    /// Whether the track shows it; otherwise the size of the values does.
+    pub by_track: bool,
+}
+
+/// One degree \[rad\].
+const DEGREE: f64 = PI / 180.0;
+/// Directions agree where the mean of their difference is this long, of 1.
+pub const AGREE: f64 = 0.8;
+/// A heading goes with the course within this angle on the mean of a log \[rad\]: 14 deg, more than drift, current and variation mostly make.
+const ALONG: f64 = 0.25;
+/// Any heading or course above this is no radian, but for one that counts turns.
+pub const MOST_RADIANS: f64 = 7.0;
 
 /// Which way a ship turns when its rudder is put over: the coefficient b of
 /// `r(t + h) - r(t) = a r(t) + b mean(delta over t to t + h) + c`, over its standard error; `None` where it cannot be determined.

@@ -1,13 +1,14 @@
 //! From the columns taken to signals in SI units: each quantity's unit and sign decided with its evidence, positions in metres.
 //! Rows are made elsewhere; here each quantity keeps its own times.
 
-use super::agree::heading;
+use super::agree::{heading, heading_unit};
 use super::choose::{Choices, Chosen, Unused};
 use super::evidence::{Given, Known, Verdict, direction, other, rotation, rudder, speed, yaw_rate};
 use super::log::{Column, Meaning};
-use super::motion::Track;
+use super::motion::{AGREE, Track};
 use super::place::places;
 use super::signal::{Signal, Tidied, median};
+use super::wind::doubts;
 use crate::numerals::sig;
 use crate::recording::Channel;
 use crate::recording::import::error::ImportError;
@@ -73,19 +74,24 @@ pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportErr
         known.sway = sway.map(|columns| Signal::new(columns, 1.0, 0.0, false).0);
     }
     if choices.units.keys().all(|k| !["lat", "lon"].contains(&k.as_str()))
-        && let Some(axis) = known.track.as_ref().and_then(|track| wrong_axis(track, chosen))
+        && let Some(axes) = known.track.as_ref().and_then(|track| wrong_axes(track, chosen))
     {
-        signals.turn_axis(axis);
+        axes.iter().for_each(|axis| signals.turn_axis(*axis));
         known.track = get(&signals, Channel::X).zip(get(&signals, Channel::Y)).and_then(|(x, y)| Track::of(&x, &y));
     }
     if let Some(columns) = chosen.get(&Meaning::Variation) {
         let verdict = other(Meaning::Variation, columns, given(Meaning::Variation)?.as_ref());
-        // Degrees, where no unit is given: a variation of a few of them is small too.
-        let factor = verdict.as_ref().map_or(1f64.to_radians(), |verdict| verdict.factor);
+        // Where no unit is given, that of the heading which it corrects: a variation of a few degrees is small in either.
+        let corrected = chosen.get(&Meaning::Channel(Channel::Psi)).map(|psi| heading_unit(psi, known.track.as_ref()));
+        let (factor, unit) = match (&verdict, corrected) {
+            (Ok(verdict), _) => (verdict.factor, verdict.unit.as_str()),
+            (Err(_), Some(1.0)) => (1.0, "rad"),
+            (Err(_), _) => (1f64.to_radians(), "deg"),
+        };
         let (signal, tidied) = Signal::new(columns, factor, 0.0, true);
         let name = columns.first().map_or("", |c| c.name.as_str());
         known.variation = median(signal.v.clone()).map(|v| (v, name.to_owned()));
-        signals.list(Meaning::Variation, columns, &signal, tidied, "deg", "positive to the east".to_owned());
+        signals.list(Meaning::Variation, columns, &signal, tidied, unit, "positive to the east".to_owned());
     }
     for meaning in [Meaning::Channel(Channel::Psi), Meaning::Course] {
         if let Some(columns) = chosen.get(&meaning) {
@@ -94,6 +100,7 @@ pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportErr
         }
     }
     known.psi = get(&signals, Channel::Psi);
+    signals.part_with_no_course(known.track.as_ref());
     signals.speeds(chosen, &known, choices)?;
     let r = Meaning::Channel(Channel::R);
     if let Some(columns) = chosen.get(&r) {
@@ -128,29 +135,51 @@ pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportErr
         };
         signals.put(*meaning, columns, verdict);
     }
-    if signals.asked.is_empty() { Ok(signals) } else { Err(ImportError::Undecided(signals.asked)) }
+    if !signals.asked.is_empty() {
+        return Err(ImportError::Undecided(signals.asked));
+    }
+    let named = |meaning: Meaning| {
+        let columns = chosen.get(&meaning).and_then(|c| c.first());
+        columns.map_or_else(|| meaning.name().to_owned(), |c| c.name.clone())
+    };
+    let doubts = doubts(&signals.by, &named);
+    signals.notes.splice(0..0, doubts);
+    signals.turn_to_plane();
+    Ok(signals)
 }
 
-/// Directions agree from this length of their mean on; they do in one sense and not in the other where these are so far apart.
-const AGREE: f64 = 0.8;
+/// A course is none from this mean of one minus the cosine of its angle to the track on: 11 deg (root mean square), more than fixes
+/// of some metres make of a ship under way.
+const NO_COURSE: f64 = 0.02;
+/// Turning of north between recordings that is reported \[rad\]: a tenth of a degree, what a compass shows.
+const CONVERGED: f64 = 0.0017;
+/// Directions agree in one sense and not in the other where the lengths of their means are so far apart.
 const APART: f64 = 0.3;
 
-/// The axis of position that is counted the wrong way, 0 for north and 1 for east: latitude and longitude against which every direction
-/// turns, from north or south and not from east or west as a mathematician's angle.
-fn wrong_axis(track: &Track, chosen: &Chosen<'_>) -> Option<usize> {
+/// The axes of position that are counted the wrong way, 0 for north and 1 for east: latitude and longitude against which every direction
+/// turns, from north or south and not from east or west as a mathematician's angle; or half a turn from which every direction points,
+/// which turns both.
+fn wrong_axes(track: &Track, chosen: &Chosen<'_>) -> Option<&'static [usize]> {
     if !chosen.contains_key(&Meaning::Latitude) || !chosen.contains_key(&Meaning::Longitude) {
         return None;
     }
     let directions: Vec<&Vec<&Column>> =
         [Meaning::Channel(Channel::Psi), Meaning::Course].iter().filter_map(|m| chosen.get(m)).collect();
-    let against = |columns: &&Vec<&Column>| {
-        let signal = heading(columns);
-        let [[right, _], [mirrored, turned]] = [track.agreement(&signal, 1.0)?, track.agreement(&signal, -1.0)?];
-        let quarter = (turned / FRAC_PI_2).round().rem_euclid(4.0);
-        let reversed = mirrored > AGREE && mirrored > right + APART;
-        (reversed && quarter % 2.0 == 0.0).then_some(if quarter == 0.0 { 1 } else { 0 })
+    let against = |columns: &&Vec<&Column>| -> Option<&'static [usize]> {
+        let signal = heading(columns, Some(track));
+        let [[right, off], [mirrored, turned]] = [track.agreement(&signal, 1.0)?, track.agreement(&signal, -1.0)?];
+        let quarters = |angle: f64| (angle / FRAC_PI_2).round().rem_euclid(4.0);
+        if mirrored > AGREE && mirrored > right + APART {
+            match quarters(turned) {
+                0.0 => Some(&[1]),
+                2.0 => Some(&[0]),
+                _ => None,
+            }
+        } else {
+            (right > AGREE && quarters(off) == 2.0).then_some(&[0, 1])
+        }
     };
-    let axes: Vec<usize> = directions.iter().map(against).collect::<Option<_>>()?;
+    let axes: Vec<&'static [usize]> = directions.iter().map(against).collect::<Option<_>>()?;
     axes.first().copied().filter(|first| axes.iter().all(|axis| axis == first))
 }
 
@@ -319,6 +348,81 @@ impl Signals {
         let text =
             format!("WARNING: the {} is {words}; if it is right as it is, pass `--unit {name}=deg`", meaning.words());
         self.notes.insert(0, text);
+    }
+
+    /// Leaves out a course over ground that is none: that of a receiver is the track's own direction, so that no heading is nearer to it.
+    fn part_with_no_course(&mut self, track: Option<&Track>) {
+        let off = |meaning: Meaning| {
+            let [length, angle] = track?.agreement(self.by.get(&meaning)?, 1.0)?;
+            Some(1.0 - length * angle.cos())
+        };
+        let (course, heading) = (off(Meaning::Course), off(Meaning::Channel(Channel::Psi)));
+        if let Some(course) = course.filter(|c| *c > NO_COURSE && heading.is_none_or(|h| *c > 2.0 * h)) {
+            self.by.remove(&Meaning::Course);
+            let of_course = |taken: &Taken| taken.quantity == Meaning::Course.name();
+            let why = format!(
+                "it is no course over ground: {} deg off the direction of the track (root mean square), a set course perhaps",
+                sig((2.0 * course).sqrt().to_degrees(), 2)
+            );
+            for taken in self.taken.iter().filter(|t| of_course(t)) {
+                self.unused.push(Unused { column: taken.column.clone(), why: why.clone() });
+            }
+            self.taken.retain(|taken| !of_course(taken));
+        }
+    }
+
+    /// Turns what counts from true north to the north of the plane on which positions are: meridians meet at the pole, so that a
+    /// longitude further east by dl at the latitude phi sees north turned by `-dl sin(phi)`.
+    fn turn_to_plane(&mut self) {
+        const RADIUS: f64 = 6_371_000.0;
+        let of = |channel| self.by.get(&Meaning::Channel(channel)).cloned();
+        let (Some([latitude, _]), Some(x), Some(y)) = (self.origin, of(Channel::X), of(Channel::Y)) else { return };
+        let turned = |t: f64| {
+            let at = |signal: &Signal| {
+                let after = signal.t.partition_point(|s| *s < t).min(signal.t.len() - 1);
+                let before = after.saturating_sub(1);
+                let (from, to) = (signal.t[before], signal.t[after]);
+                let share = if to > from { ((t - from) / (to - from)).clamp(0.0, 1.0) } else { 1.0 };
+                signal.v[before] + share * (signal.v[after] - signal.v[before])
+            };
+            let phi = latitude.to_radians() + at(&x) / RADIUS;
+            at(&y) / (RADIUS * phi.cos()) * phi.sin()
+        };
+        if x.t.is_empty() {
+            return;
+        }
+        let mut most: f64 = 0.0;
+        for channel in [Channel::Psi, Channel::WindDirection, Channel::CurrentDirection, Channel::WaveDirection] {
+            if let Some(signal) = self.by.get_mut(&Meaning::Channel(channel)) {
+                for (t, v) in signal.t.iter().zip(&mut signal.v) {
+                    *v -= turned(*t);
+                    most = most.max(turned(*t).abs());
+                }
+            }
+        }
+        if let Some(course) = self.by.get_mut(&Meaning::Course) {
+            course.t.iter().zip(&mut course.v).for_each(|(t, v)| *v -= turned(*t));
+        }
+        if let [Some(north), Some(east)] =
+            [Meaning::VelocityNorth, Meaning::VelocityEast].map(|m| self.by.get(&m).cloned())
+        {
+            let turn = |signal: &Signal, other: &Signal, sign: f64| -> Vec<f64> {
+                let of = |(t, v): (&f64, &f64)| {
+                    let (sin, cos) = turned(*t).sin_cos();
+                    v * cos + sign * sin * other.at(*t, other.step)
+                };
+                signal.t.iter().zip(&signal.v).map(of).collect()
+            };
+            let (v_north, v_east) = (turn(&north, &east, 1.0), turn(&east, &north, -1.0));
+            self.by.insert(Meaning::VelocityNorth, Signal { v: v_north, ..north });
+            self.by.insert(Meaning::VelocityEast, Signal { v: v_east, ..east });
+        }
+        if most > CONVERGED {
+            self.notes.push(format!(
+                "the recordings reach so far to the east or west that north turns by {} deg against the plane of the positions; headings and directions are turned with it",
+                sig(most.to_degrees(), 2)
+            ));
+        }
     }
 
     /// Speeds: over ground alone or in parts, and through water.
