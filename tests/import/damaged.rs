@@ -460,7 +460,7 @@ fn units() -> Vec<Case> {
             "advance_ratio",
             Channel::N,
             Where::Runs(30),
-            "`unit` of n",
+            "unit of n",
         ),
         case(
             "n in rad/s in one run",
@@ -468,7 +468,7 @@ fn units() -> Vec<Case> {
             "advance_ratio",
             Channel::N,
             here,
-            "`unit` of n",
+            "unit of n",
         ),
         case("r in deg/s read as rad/s", scaled("r", 57.295_78), "unit_error", Channel::R, Where::Runs(30), "`unit`"),
         case(

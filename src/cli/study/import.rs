@@ -43,7 +43,7 @@ The answer lists what each column is taken for, with the evidence. Of several co
     heading, rudder by its size and by the way the ship turns, propeller rate by its size. What the data do \
     not determine is asked for, everything in one message.
 
-Positions become metres on the plane that is tangent to WGS84 amid the track. Without u and v these \
+Positions become metres sailed north and east on WGS84. Without u and v these \
     are u = SOG cos(COG - heading), v = SOG sin(COG - heading), over ground at the antenna, or derived \
     from position and heading; `reference_point` in columns.toml takes them to midship.
 

@@ -58,7 +58,7 @@ pub struct Imported {
     pub unused: Vec<Unused>,
     /// Notes on the import.
     pub notes: Vec<String>,
-    /// Point of the tangent plane, latitude and longitude \[deg\].
+    /// Latitude and longitude of the point from which positions count \[deg\].
     pub origin: Option<[f64; 2]>,
     /// Where u and v are from.
     pub velocity: Velocity,

@@ -142,7 +142,11 @@ pub fn direction(
         (Some(given), _) if given.by_user => (given.unit.as_str(), given.factor, String::new()),
         (_, Some(shown)) => {
             let (unit, words) = if shown.factor == 1.0 { ("rad", "radians") } else { ("deg", "degrees") };
-            let by_track = if shown.by_track { format!("; the track goes that way in {words}") } else { String::new() };
+            let by_track = if shown.by_track && (top <= MOST_RADIANS || shown.factor == 1.0) {
+                format!("; the track goes that way in {words}")
+            } else {
+                String::new()
+            };
             (unit, shown.factor, format!("values up to {}{by_track}", sig(top, 3)))
         }
         (Some(given), None) => (given.unit.as_str(), given.factor, String::new()),

@@ -1,7 +1,7 @@
-//! Latitudes and longitudes of columns as metres on a plane: degrees, radians or degrees and minutes, without what is no fix.
+//! Latitudes and longitudes of columns as metres: degrees, radians or degrees and minutes, without what is no fix.
 //! Which columns they are is chosen elsewhere, and no axis is turned here.
 
-use super::geodesy::{Plane, from_minutes};
+use super::geodesy::{from_minutes, sailed};
 use super::log::Column;
 use super::signal::{Signal, Tidied, size_below};
 use crate::recording::import::error::ImportError;
@@ -22,8 +22,6 @@ pub struct Places {
     pub form: &'static str,
     /// Positions at 0 N 0 E.
     pub nowhere: usize,
-    /// The furthest from the point \[m\].
-    pub far: f64,
 }
 
 /// Positions from the columns of latitude and longitude; `None` where no time has both.
@@ -46,11 +44,10 @@ pub fn places(lat: &[&Column], lon: &[&Column], radians: bool) -> Result<Option<
         }
     }
     let column = |k: usize| places.iter().map(|p| p[k]).collect::<Vec<f64>>();
-    let Some(plane) = Plane::amid(&column(1), &column(2)) else { return Ok(None) };
-    let metres: Vec<[f64; 2]> = places.iter().map(|p| plane.metres(p[1], p[2])).collect();
+    let Some(sailed) = sailed(&column(1), &column(2)) else { return Ok(None) };
     let axis = |axis: usize| Signal {
         t: column(0),
-        v: metres.iter().map(|m| m[axis]).collect(),
+        v: sailed.metres.iter().map(|m| m[axis]).collect(),
         ..lat_signal.without_samples()
     };
     let form = match (minutes, radians) {
@@ -58,10 +55,9 @@ pub fn places(lat: &[&Column], lon: &[&Column], radians: bool) -> Result<Option<
         (_, true) => "rad",
         _ => "deg",
     };
-    let far = metres.iter().map(|m| m[0].hypot(m[1])).fold(0.0, f64::max);
     let (x, y) = (axis(0), axis(1));
     let told = [lat_signal, lon_signal];
-    Ok(Some(Places { x, y, origin: plane.origin, told, tidied, form, nowhere, far }))
+    Ok(Some(Places { x, y, origin: sailed.origin, told, tidied, form, nowhere }))
 }
 
 /// Latitudes and longitudes in degrees, of which one value is `unit`, and whether they were written as degrees and minutes. Single

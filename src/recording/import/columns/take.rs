@@ -43,7 +43,7 @@ pub struct Signals {
     pub unused: Vec<Unused>,
     /// Warnings and what was put in order.
     pub notes: Vec<String>,
-    /// Point of the tangent plane \[deg\].
+    /// Latitude and longitude of the point from which positions count \[deg\].
     pub origin: Option<[f64; 2]>,
     /// Questions that the data do not answer.
     asked: Vec<String>,
@@ -144,15 +144,12 @@ pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportErr
     };
     let doubts = doubts(&signals.by, &named);
     signals.notes.splice(0..0, doubts);
-    signals.turn_to_plane();
     Ok(signals)
 }
 
 /// A course is none from this mean of one minus the cosine of its angle to the track on: 11 deg (root mean square), more than fixes
 /// of some metres make of a ship under way.
 const NO_COURSE: f64 = 0.02;
-/// Turning of north between recordings that is reported \[rad\]: a tenth of a degree, what a compass shows.
-const CONVERGED: f64 = 0.0017;
 /// Directions agree in one sense and not in the other where the lengths of their means are so far apart.
 const APART: f64 = 0.3;
 
@@ -183,8 +180,8 @@ fn wrong_axes(track: &Track, chosen: &Chosen<'_>) -> Option<&'static [usize]> {
     axes.first().copied().filter(|first| axes.iter().all(|axis| axis == first))
 }
 
-fn plane_words(origin: [f64; 2]) -> String {
-    format!("plane tangent to WGS84 at {} N {} E", origin[0], origin[1])
+fn origin_words(origin: [f64; 2]) -> String {
+    format!("metres on WGS84 from {} N {} E", origin[0], origin[1])
 }
 
 /// The verdict on a direction of wind, current or waves, with what it counts from.
@@ -309,15 +306,7 @@ impl Signals {
             let text = "positions are 0 N 0 E, which receivers write without a fix; taken as missing";
             self.notes.push(format!("{} {text}", places.nowhere));
         }
-        if places.far > 100_000.0 {
-            let text = format!(
-                "positions reach {:.0} km from the point of the plane, where distances are {:.2} % short",
-                places.far / 1e3,
-                100.0 * places.far * places.far / 8.1e13
-            );
-            self.notes.push(text);
-        }
-        let why = plane_words(places.origin);
+        let why = origin_words(places.origin);
         let [told_lat, told_lon] = &places.told;
         self.list(Meaning::Latitude, lat, told_lat, places.tidied, places.form, why.clone());
         self.list(Meaning::Longitude, lon, told_lon, Tidied::default(), places.form, why);
@@ -336,13 +325,13 @@ impl Signals {
         if let Some(origin) = &mut self.origin {
             origin[axis] = -origin[axis];
         }
-        let plane = self.origin.map_or_else(String::new, plane_words);
+        let from = self.origin.map_or_else(String::new, origin_words);
         let side = ["south", "west"][axis];
         let words =
             format!("counted positive to the {side}, turned: heading and course turn against the track otherwise");
         for taken in &mut self.taken {
             let turned = if taken.quantity == meaning.name() { format!("{words}; ") } else { String::new() };
-            taken.evidence = turned + &plane;
+            taken.evidence = turned + &from;
         }
         let name = meaning.name();
         let text =
@@ -368,60 +357,6 @@ impl Signals {
                 self.unused.push(Unused { column: taken.column.clone(), why: why.clone() });
             }
             self.taken.retain(|taken| !of_course(taken));
-        }
-    }
-
-    /// Turns what counts from true north to the north of the plane on which positions are: meridians meet at the pole, so that a
-    /// longitude further east by dl at the latitude phi sees north turned by `-dl sin(phi)`.
-    fn turn_to_plane(&mut self) {
-        const RADIUS: f64 = 6_371_000.0;
-        let of = |channel| self.by.get(&Meaning::Channel(channel)).cloned();
-        let (Some([latitude, _]), Some(x), Some(y)) = (self.origin, of(Channel::X), of(Channel::Y)) else { return };
-        let turned = |t: f64| {
-            let at = |signal: &Signal| {
-                let after = signal.t.partition_point(|s| *s < t).min(signal.t.len() - 1);
-                let before = after.saturating_sub(1);
-                let (from, to) = (signal.t[before], signal.t[after]);
-                let share = if to > from { ((t - from) / (to - from)).clamp(0.0, 1.0) } else { 1.0 };
-                signal.v[before] + share * (signal.v[after] - signal.v[before])
-            };
-            let phi = latitude.to_radians() + at(&x) / RADIUS;
-            at(&y) / (RADIUS * phi.cos()) * phi.sin()
-        };
-        if x.t.is_empty() {
-            return;
-        }
-        let mut most: f64 = 0.0;
-        for channel in [Channel::Psi, Channel::WindDirection, Channel::CurrentDirection, Channel::WaveDirection] {
-            if let Some(signal) = self.by.get_mut(&Meaning::Channel(channel)) {
-                for (t, v) in signal.t.iter().zip(&mut signal.v) {
-                    *v -= turned(*t);
-                    most = most.max(turned(*t).abs());
-                }
-            }
-        }
-        if let Some(course) = self.by.get_mut(&Meaning::Course) {
-            course.t.iter().zip(&mut course.v).for_each(|(t, v)| *v -= turned(*t));
-        }
-        if let [Some(north), Some(east)] =
-            [Meaning::VelocityNorth, Meaning::VelocityEast].map(|m| self.by.get(&m).cloned())
-        {
-            let turn = |signal: &Signal, other: &Signal, sign: f64| -> Vec<f64> {
-                let of = |(t, v): (&f64, &f64)| {
-                    let (sin, cos) = turned(*t).sin_cos();
-                    v * cos + sign * sin * other.at(*t, other.step)
-                };
-                signal.t.iter().zip(&signal.v).map(of).collect()
-            };
-            let (v_north, v_east) = (turn(&north, &east, 1.0), turn(&east, &north, -1.0));
-            self.by.insert(Meaning::VelocityNorth, Signal { v: v_north, ..north });
-            self.by.insert(Meaning::VelocityEast, Signal { v: v_east, ..east });
-        }
-        if most > CONVERGED {
-            self.notes.push(format!(
-                "the recordings reach so far to the east or west that north turns by {} deg against the plane of the positions; headings and directions are turned with it",
-                sig(most.to_degrees(), 2)
-            ));
         }
     }
 
