@@ -65,6 +65,12 @@ impl Mechanism {
         self.look_alikes.contains(&other.name) || other.look_alikes.contains(&self.name)
     }
 
+    /// Whether its form is exact: an error of a sensor, or water that carries the ship, change how motion and measurements are related, and
+    /// no law of a force is in them that may be another.
+    pub fn is_kinematic(&self) -> bool {
+        self.kind == Kind::Sensor || self.name == "current"
+    }
+
     /// Whether it is a vector over the ground, which the weather makes anew every day; the others are coefficients, which stay.
     pub fn is_weather(&self) -> bool {
         self.parameters == ["north", "east"]

@@ -1,8 +1,9 @@
 //! The verdict once every finding has its grade: what is left of the decision on the tests, as a pure function.
 //! It estimates nothing and looks at no runs.
 
+use crate::diagnose::law::Law;
 use crate::diagnose::proof::finding::Finding;
-use crate::diagnose::proof::grade::Grade;
+use crate::diagnose::proof::grade::{Grade, LawGrade};
 use crate::diagnose::search::decide::{Verdict, named};
 
 /// The verdict, from the one that the tests of the kept model give, the grades of what was withdrawn, and whether the model
@@ -34,6 +35,14 @@ pub fn lead(decided: Verdict, findings: &mut [Finding]) -> Verdict {
             named(first.kind, first.confidence_set.len())
         }
         _ => decided,
+    }
+}
+
+/// A law is confirmed by the models that are written, which are within their bounds: where these are not better on unseen runs with it
+/// than without, it describes the training runs alone.
+pub fn cap_law(law: &mut Option<Law>, better_together: bool) {
+    if let Some(law) = law.as_mut().filter(|law| law.is_confirmed() && !better_together) {
+        law.grade = LawGrade::Exploratory;
     }
 }
 

@@ -224,8 +224,12 @@ fn not_followed(f: &Following) -> String {
 
 /// A finding with its values, grade and proof.
 fn titled(f: &Finding) -> String {
-    let size =
-        if f.by_session { format!("a different value in each of {} sessions", f.sessions.len()) } else { values(f) };
+    let size = match f.sessions.as_slice() {
+        all if f.by_session => format!("a different value in each of {} sessions", all.len()),
+        [] => values(f),
+        [one] => format!("{}, only in {one}", values(f)),
+        some => format!("{}, only in {} sessions", values(f), some.len()),
+    };
     let grade = match f.grade {
         Grade::Confirmed if f.held_out.is_none() => "shown by the recordings themselves",
         Grade::Confirmed => "confirmed on unseen runs",
@@ -281,7 +285,9 @@ fn values(f: &Finding) -> String {
     // A parameter without a unit has `-` in its place.
     let unit = |p: &Amplitude| if p.unit == "-" { String::new() } else { format!(" {}", p.unit) };
     let one = |p: &Amplitude| format!("{} = {}{}", p.name, sig(p.value, 3), unit(p));
-    f.parameters.iter().map(one).collect::<Vec<_>>().join(", ")
+    let undetermined = |p: &Amplitude| p.ci95[0] <= 0.0 && p.ci95[1] >= 0.0;
+    let all = f.parameters.iter().map(one).collect::<Vec<_>>().join(", ");
+    if f.parameters.iter().all(undetermined) { format!("{all}, which the recordings do not determine") } else { all }
 }
 
 /// What is named, forces of the ship and errors of sensors each for themselves, the leading kind first.

@@ -209,7 +209,7 @@ fn signature(c: &Candidate, s: &Screen) -> String {
         Kind::Environment => "fixed on the earth: on the ship's axes it turns with the heading".to_string(),
         Kind::Ship => "fixed to the ship: it follows from the ship's own motion".to_string(),
         Kind::Actuator => "it follows from the history of the actuator".to_string(),
-        Kind::Sensor => "no force: positions and velocities do not agree with each other".to_string(),
+        Kind::Sensor => "no force: what the sensors report does not agree".to_string(),
     };
     if s.asymmetric_test.p < 1e-3 {
         words.push_str("; it breaks port-starboard symmetry or depends on heading");

@@ -68,6 +68,11 @@ pub struct HeldOut {
 }
 
 impl HeldOut {
+    /// Whether free simulation of the held-out runs is better after than before.
+    pub fn is_better(&self) -> bool {
+        self.improvement.is_some_and(|gain| gain > 0.0)
+    }
+
     /// Whether free simulation of the held-out runs is worse after than before, beyond its interval, or by its sign where there is none: then
     /// no part of what changed is written or confirmed, though each by itself may predict better.
     pub fn is_worse(&self) -> bool {

@@ -73,8 +73,12 @@ impl<'a> From<&'a Row> for Further<'a> {
 /// more than what an imperfect form of an earlier one leaves behind.
 pub fn may_be_further(f: &Further, beside: &Beside, candidates: &[Candidate]) -> bool {
     let m = candidates[f.candidate].mechanism;
-    let remainder =
-        |first: usize, statistic: f64| m.looks_like(candidates[first].mechanism) && f.statistic < REMAINDER * statistic;
+    // What is exact leaves nothing of itself behind.
+    let remainder = |first: usize, statistic: f64| {
+        let first = candidates[first].mechanism;
+        let exact = m.is_kinematic() && first.is_kinematic();
+        m.looks_like(first) && !exact && f.statistic < REMAINDER * statistic
+    };
     let left_by = |a: &Selected| {
         // Changes of the ship's own forces between sessions: the form of the first cannot be distinguished from a second.
         let between_sessions = a.extent != Extent::All && *f.extent != Extent::All;
