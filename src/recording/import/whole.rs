@@ -1,7 +1,7 @@
 //! The import of files as a whole: read, choose, decide units, make rows, cut into recordings.
 //! It writes nothing: the files of a study are made from its result in `study`.
 
-use super::columns::choose::{Choices, Chosen, Unused, choose};
+use super::columns::choose::{Choice, Choices, Chosen, Unused, choose};
 use super::columns::fills::take_out;
 use super::columns::log::{Clock, Log, Meaning};
 use super::columns::names::meaning;
@@ -87,9 +87,10 @@ pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, 
     for (log, shift) in logs.iter_mut().zip(&shifts) {
         log.columns.iter_mut().for_each(|c| c.t.iter_mut().for_each(|t| *t += shift));
     }
-    let (chosen, unused) = choose(&logs, &settings.choices)?;
+    let Choice { chosen, unused, asked } = choose(&logs, &settings.choices)?;
     let driven = &settings.choices.driven;
-    let taken = take(&chosen, &settings.choices).map_err(|error| with_inputs(error, &chosen, &logs, driven));
+    let taken = with_questions(take(&chosen, &settings.choices), asked);
+    let taken = taken.map_err(|error| with_inputs(error, &chosen, &logs, driven));
     let mut signals = taken.map_err(|error| with_texts(error, &logs))?;
     signals.unused.extend(unused);
     missing(&chosen, &signals, &logs, driven).map_err(|error| with_texts(error, &logs))?;
@@ -195,6 +196,25 @@ fn with_texts(error: ImportError, logs: &[Log]) -> ImportError {
         ImportError::Undecided(asked) => ImportError::Undecided(unused.chain(asked).collect()),
         ImportError::Choice(words) => ImportError::Choice(unused.chain([words]).collect::<Vec<_>>().join("; ")),
         error => error,
+    }
+}
+
+/// The signals, or what is asked of units that are not known with what is asked besides.
+fn with_questions(taken: Result<Signals, ImportError>, mut asked: Vec<String>) -> Result<Signals, ImportError> {
+    if asked.is_empty() {
+        return taken;
+    }
+    match taken {
+        Ok(_) => Err(ImportError::Undecided(asked)),
+        Err(ImportError::Undecided(more)) => {
+            let flag = |question: &str| {
+                question.split_once("`--unit ").and_then(|(_, s)| Some(s.split_once('=')?.0.to_owned()))
+            };
+            let of_units: Vec<Option<String>> = asked.iter().map(|question| flag(question)).collect();
+            asked.extend(more.into_iter().filter(|question| !of_units.contains(&flag(question))));
+            Err(ImportError::Undecided(asked))
+        }
+        Err(error) => Err(error),
     }
 }
 

@@ -5,9 +5,10 @@ use super::actuators::by_names;
 use super::agree::{Sight, heading};
 use super::log::{Column, Log, Meaning};
 use super::motion::Track;
-use super::names::{VAGUELY, is_second_choice, is_shaft, is_unit, reading, source};
+use super::names::{Reading, VAGUELY, by_revolutions, is_second_choice, is_unit, reading, source};
 use super::place::places;
 use super::signal::Signal;
+use super::take::needed;
 use crate::files::suggestion;
 use crate::recording::import::error::ImportError;
 use crate::recording::{CHANNELS, Channel, Driven, Quantity};
@@ -89,6 +90,17 @@ pub struct Unused {
 /// The columns of one quantity: one name, in one file or several.
 pub type Chosen<'a> = BTreeMap<Meaning, Vec<&'a Column>>;
 
+/// What was chosen of the columns.
+#[derive(Default)]
+pub struct Choice<'a> {
+    /// The columns that are taken, by what they are.
+    pub chosen: Chosen<'a>,
+    /// Those that are not.
+    pub unused: Vec<Unused>,
+    /// Questions about units that are not known.
+    pub asked: Vec<String>,
+}
+
 /// A column of one name, in one file or several, that may be taken for a quantity.
 struct Candidate<'a> {
     name: &'a str,
@@ -119,13 +131,13 @@ fn heading_of_courses(candidates: &mut BTreeMap<Meaning, Vec<Candidate>>) {
     }
 }
 
-/// The columns that are taken, by what they are, and those that are not. Candidates are ranked by what the user says, whether they
+/// The columns that are taken and those that are not. Candidates are ranked by what the user says, whether they
 /// contain values that change, whether the data contradict them, whether their partner is of the same sensor, how much of their name the
 /// quantity explains, whether the file states a unit that fits, and by how well they agree with the data.
 ///
 /// # Errors
 /// [`ImportError::Choice`] for a column that no file has.
-pub fn choose<'a>(logs: &'a [Log], choices: &Choices) -> Result<(Chosen<'a>, Vec<Unused>), ImportError> {
+pub fn choose<'a>(logs: &'a [Log], choices: &Choices) -> Result<Choice<'a>, ImportError> {
     let names = named(logs);
     let forced = forced(&names, choices)?;
     let free: Vec<(&str, Option<&str>)> = names
@@ -191,7 +203,17 @@ pub fn choose<'a>(logs: &'a [Log], choices: &Choices) -> Result<(Chosen<'a>, Vec
         let why = "the direction from north is taken for that of the wind".to_owned();
         unused.extend(angle.first().map(|c| Unused { column: c.name.clone(), why }));
     }
-    Ok((chosen, unused))
+    let mut asked = Vec::new();
+    chosen.retain(|meaning, columns| {
+        let Some(question) = unknown_unit(*meaning, columns, choices) else { return true };
+        if needed(*meaning) {
+            asked.push(question);
+            return true;
+        }
+        unused.extend(columns.first().map(|c| Unused { column: c.name.clone(), why: question }));
+        false
+    });
+    Ok(Choice { chosen, unused, asked })
 }
 
 /// The columns of all files by their name, in the order in which they come.
@@ -239,9 +261,10 @@ fn read(name: &str, columns: &[&Column], forced: &BTreeMap<String, Meaning>) -> 
 
 /// What a name and its unit say.
 fn by_name(name: &str, unit: Option<&str>) -> Option<(Meaning, f64)> {
-    let shaft = || is_shaft(name) && unit.is_some_and(|u| Quantity::Rotation.factor(u).is_some());
-    let by_name = reading(name).filter(|r| unit.is_none_or(|unit| fits(r.meaning, unit)));
-    by_name.map(|r| (r.meaning, r.explained)).or_else(|| shaft().then_some((SHAFT, 0.5)))
+    // One letter says too little where the unit is none of what it may stand for: `V [V]`.
+    let sure = |r: &Reading, unit| is_stated(r.meaning, unit) || name.chars().count() > 1 && fits(r.meaning, unit);
+    let by_name = reading(name).filter(|r| unit.is_none_or(|unit| sure(r, unit)));
+    by_name.or_else(|| by_revolutions(name, unit?)).map(|r| (r.meaning, r.explained))
 }
 
 /// The order in which quantities are chosen: those with which others are compared come first.
@@ -318,16 +341,15 @@ fn best(list: &[Candidate<'_>], meaning: Meaning, partner: Option<&str>, sight: 
 /// Takes the quantities with which others are compared from what was just chosen.
 fn look(sight: &mut Sight, meaning: Meaning, chosen: &Chosen<'_>, choices: &Choices) {
     let of = |meaning: Meaning| chosen.get(&meaning).map(Vec::as_slice);
-    let radians = |meaning: Meaning, columns: &[&Column]| {
+    let unit = |meaning: Meaning, columns: &[&Column]| {
         let unit = choices.units.get(meaning.name()).or(columns.first().and_then(|c| c.unit.as_ref()));
-        unit.is_some_and(|u| Quantity::Angle.factor(u) == Some(1.0))
+        unit.and_then(|u| Quantity::Angle.factor(u))
     };
     match meaning {
         Meaning::Longitude => {
             let both = of(Meaning::Latitude).zip(of(Meaning::Longitude));
             let places = both.and_then(|(lat, lon)| {
-                let radians = radians(Meaning::Latitude, lat) && radians(Meaning::Longitude, lon);
-                places(lat, lon, radians).ok().flatten()
+                places(lat, lon, [unit(Meaning::Latitude, lat), unit(Meaning::Longitude, lon)]).ok().flatten()
             });
             sight.track = places.and_then(|p| Track::of(&p.x, &p.y));
         }
@@ -341,8 +363,32 @@ fn look(sight: &mut Sight, meaning: Meaning, chosen: &Chosen<'_>, choices: &Choi
     }
 }
 
-/// Whether a quantity may be measured in a unit: a rudder in deg/s is no rudder angle. A spelling that is no unit says nothing, nor does
-/// `ms`, which is written for m/s too.
+/// Whether a unit is one of a quantity.
+fn is_stated(meaning: Meaning, unit: &str) -> bool {
+    meaning.quantity().factor(unit).is_some()
+}
+
+/// Whether a speed is in `ms`, which is written for m/s and for milliseconds, so that it says nothing.
+fn says_nothing(meaning: Meaning, unit: &str) -> bool {
+    unit == "ms" && meaning.quantity() == Quantity::Speed
+}
+
+/// Whether a quantity may be measured in a unit: a rudder in deg/s is no rudder angle. A unit that is not known is asked for.
 fn fits(meaning: Meaning, unit: &str) -> bool {
-    meaning.quantity().factor(unit).is_some() || !is_unit(unit) || Quantity::Time.factor(unit).is_some()
+    is_stated(meaning, unit) || !is_unit(unit) || says_nothing(meaning, unit)
+}
+
+/// The question for a unit that is not known, where no other column shows it: speeds and rates are compared with the track and the heading.
+fn unknown_unit(meaning: Meaning, columns: &[&Column], choices: &Choices) -> Option<String> {
+    let unit = columns.iter().find_map(|c| c.unit.as_deref().filter(|unit| !is_stated(meaning, unit)))?;
+    let compared = matches!(meaning.quantity(), Quantity::Speed | Quantity::AngularRate) && needed(meaning);
+    if compared || choices.units.contains_key(meaning.name()) {
+        return None;
+    }
+    let (name, choices) = (meaning.name(), meaning.quantity().choices().replace(", ", " or "));
+    let column = columns.first().map_or("", |c| c.name.as_str());
+    Some(format!(
+        "the unit `{unit}` of column `{column}` ({}) is not known: pass `--unit {name}={choices}`, or write the column in one of these",
+        meaning.words()
+    ))
 }

@@ -274,8 +274,7 @@ impl Signals {
             return Ok(());
         };
         let units = [given(Meaning::Latitude, lat, choices)?, given(Meaning::Longitude, lon, choices)?];
-        let radians = units.iter().all(|unit| unit.as_ref().is_some_and(|u| u.factor == 1.0));
-        let Some(places) = places(lat, lon, radians)? else { return Ok(()) };
+        let Some(places) = places(lat, lon, units.map(|unit| unit.map(|u| u.factor)))? else { return Ok(()) };
         if places.nowhere > 0 {
             let text = "positions are 0 N 0 E, which receivers write without a fix; taken as missing";
             self.notes.push(format!("{} {text}", places.nowhere));

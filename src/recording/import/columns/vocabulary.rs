@@ -100,7 +100,7 @@ pub const NEUTRAL: &str = "a, actual, ais, angle, average, avg, bow, data, deg, 
 /// Words that make a column something else of the thing that it names: how fast a rudder moves, whether its pump runs, when it was reported.
 pub const CHANGES: &str = "acceleration, accel, acc, accuracy, age, alarm, apparent, aw, bearing, beschleunigung, bias, count, \
          covariance, cross, destination, dest, deviation, diff, difference, drag, dt, error, err, fan, force, \
-         fuel, gust, gyroscope, heave, interval, kraft, last, lift, limit, load, max, maximum, min, minimum, \
+         fuel, aux, auxiliary, alternator, generator, genset, dg, winch, gust, gyroscope, heave, interval, kraft, last, lift, limit, load, max, maximum, min, minimum, \
          mode, moment, oil, pitch, power, pressure, pump, quality, rate, residual, roll, running, rms, sigma, \
          slip, state, status, std, stddev, stamp, tau, temperature, temp, tide, time, torque, thrust, \
          tension, tw, turbo, turbocharger, update, updated, valid, var, variance, voltage, waypoint, wave, \
@@ -112,6 +112,10 @@ pub const MOVES: &str = "speed, velocity, vel, geschwindigkeit, vitesse, velocit
 /// Words that make a column an order rather than a measurement.
 pub const ORDERS: &str = "order, ordered, ord, command, commanded, cmd, set, setpoint, demand, demanded, desired, target, ref, \
          reference, requested, soll, sollwert, consigne, comando, ordre, orden";
+
+/// Words of what drives a ship.
+pub const DRIVES: &str =
+    "propeller, prop, shaft, engine, me, motor, moteur, motore, screw, helice, elica, schraube, welle, maschine";
 
 /// Names of a magnetic reference.
 pub const MAGNETIC: &str = "magnetic, mag, hdm, compass, magnetisch, magnetique, magnetico";
