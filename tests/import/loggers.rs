@@ -152,6 +152,62 @@ fn of_columns_that_are_named_alike_the_one_that_agrees_with_the_data_is_taken() 
 }
 
 #[test]
+fn of_an_order_and_a_feedback_the_feedback_is_the_angle() {
+    // The order leaps; what is recorded as the rudder follows it at two and a half degrees a second.
+    let orders: Vec<String> = sailed(0.0).iter().map(|row| format!("{:.1}", row.rudder)).collect();
+    let mut angle = 0.0_f64;
+    let follow = |order: &String| {
+        angle += (order.parse::<f64>().unwrap() - angle).clamp(-2.0, 2.0);
+        format!("{angle:.2}")
+    };
+    let angles: Vec<String> = orders.iter().map(follow).collect();
+    let of = |first: &str, second: &str, swapped: bool| {
+        let text = log("", |_| String::new());
+        let rows = text.lines().enumerate().map(|(i, line)| {
+            let mut cells: Vec<&str> = line.split(',').collect();
+            let both = [&orders, &angles].map(|column| if i == 0 { "" } else { column[i - 1].as_str() });
+            let [a, b] = if i == 0 { [first, second] } else { both };
+            cells.splice(6..7, if swapped { [b, a] } else { [a, b] });
+            cells.join(",") + "\n"
+        });
+        read(&rows.collect::<String>())
+    };
+    for (order, rudder) in [
+        ("Rudder SP", "Rudder PV"),
+        ("Rudder Dmd", "Rudder Act"),
+        ("Consigna timón", "Ángulo de timón"),
+        ("Autopilot rudder", "Steering gear position"),
+        ("Helm", "Rudder"),
+        ("rudder 1", "rudder 2"),
+        ("rudder", "rudder angle"),
+    ] {
+        for swapped in [false, true] {
+            let imported = of(order, rudder, swapped);
+            let found = ["delta", "delta_order"].map(|q| taken(&imported, q));
+            assert_eq!(found, [rudder, order], "{:?}", imported.unused);
+        }
+    }
+    let evidence =
+        |imported: &Imported| imported.taken.iter().find(|t| t.quantity == "delta").unwrap().evidence.clone();
+    contains_all(&evidence(&of("rudder 1", "rudder 2", false)), &["`rudder 1` leads it and leaps faster"]);
+}
+
+#[test]
+fn a_unit_that_is_not_known_is_asked_for_or_costs_its_column() {
+    let text = log(",Depth (faden)", |_| ",20.1".to_owned());
+    let imported = read(&text);
+    assert!(taken(&imported, "depth").is_empty());
+    let why = &imported.unused.iter().find(|u| u.column == "Depth").unwrap().why;
+    contains_all(why, &["the unit `faden` of column `Depth`", "is not known: pass `--unit depth=m or "]);
+    let text = text.replacen("rudder", "rudder [increments]", 1);
+    let said = written(&text, &ImportSettings::default()).unwrap_err();
+    contains_all(&said, &["the unit `increments` of column `rudder`", "`--unit delta=rad or deg"]);
+    let choices = Choices { units: [("delta".to_owned(), "deg".to_owned())].into(), ..Choices::default() };
+    let imported = written(&text, &ImportSettings { choices, ..ImportSettings::default() }).unwrap();
+    assert_eq!(taken(&imported, "delta"), "rudder");
+}
+
+#[test]
 fn a_pair_is_of_one_sensor() {
     let text = log(",GPS2 lon,GPS2 lat,STW Trans [kn],STW Long [kn]", |row| {
         format!(",{:.6},{:.6},0.1,9.8", row.place[1] + 0.001, row.place[0])

@@ -87,12 +87,16 @@ pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, 
     for (log, shift) in logs.iter_mut().zip(&shifts) {
         log.columns.iter_mut().for_each(|c| c.t.iter_mut().for_each(|t| *t += shift));
     }
-    let Choice { chosen, unused, asked } = choose(&logs, &settings.choices)?;
+    let Choice { chosen, unused, asked, decided } = choose(&logs, &settings.choices)?;
     let driven = &settings.choices.driven;
     let taken = with_questions(take(&chosen, &settings.choices), asked);
     let taken = taken.map_err(|error| with_inputs(error, &chosen, &logs, driven));
     let mut signals = taken.map_err(|error| with_texts(error, &logs))?;
     signals.unused.extend(unused);
+    for (meaning, words) in decided {
+        let of = |taken: &&mut Taken| taken.quantity == meaning.name();
+        signals.taken.iter_mut().filter(of).for_each(|taken| taken.evidence += &format!("; {words}"));
+    }
     missing(&chosen, &signals, &logs, driven).map_err(|error| with_texts(error, &logs))?;
     mend_heading(&mut signals);
     let (table, filled) = rows(&signals);

@@ -6,6 +6,7 @@ use super::agree::{Sight, heading};
 use super::log::{Column, Log, Meaning};
 use super::motion::Track;
 use super::names::{Reading, VAGUELY, by_revolutions, is_second_choice, is_unit, reading, source};
+use super::orders::follows;
 use super::place::places;
 use super::signal::Signal;
 use super::take::needed;
@@ -99,6 +100,8 @@ pub struct Choice<'a> {
     pub unused: Vec<Unused>,
     /// Questions about units that are not known.
     pub asked: Vec<String>,
+    /// What else decided than names: by what a column is taken for, a sentence for its evidence.
+    pub decided: Vec<(Meaning, String)>,
 }
 
 /// A column of one name, in one file or several, that may be taken for a quantity.
@@ -175,11 +178,24 @@ pub fn choose<'a>(logs: &'a [Log], choices: &Choices) -> Result<Choice<'a>, Impo
     heading_of_courses(&mut candidates);
     let mut order: Vec<Meaning> = candidates.keys().copied().collect();
     order.sort_by_key(|meaning| (turn(*meaning), *meaning));
-    let (mut chosen, mut sight) = (Chosen::new(), Sight::default());
+    let (mut chosen, mut sight, mut decided) = (Chosen::new(), Sight::default(), Vec::new());
     for meaning in order {
-        let Some(list) = candidates.remove(&meaning) else { continue };
+        let Some(mut list) = candidates.remove(&meaning) else { continue };
         let partner = leader(meaning).and_then(|leader| chosen.get(&leader)).and_then(|c| c.first());
-        let best = best(&list, meaning, partner.map(|c| c.name.as_str()), &sight);
+        let mut best = best(&list, meaning, partner.map(|c| c.name.as_str()), &sight);
+        if let Some(order) = ordered(meaning)
+            && let Some(found) = order_among(&mut list, &mut best)
+        {
+            let (of, by) = (list[best].name, found.name.to_owned());
+            decided.push((meaning, format!("`{by}` leads it and leaps faster: that is the order")));
+            if chosen.contains_key(&order) || candidates.contains_key(&order) {
+                let why = format!("it leads `{of}` and leaps faster: an order, of which another column is taken");
+                unused.push(Unused { column: by, why });
+            } else {
+                decided.push((order, format!("leads `{of}` and leaps faster: the order")));
+                chosen.insert(order, found.columns);
+            }
+        }
         let taken = list.get(best).map_or("", |c| c.name);
         for (i, candidate) in list.into_iter().enumerate() {
             if i == best {
@@ -213,7 +229,31 @@ pub fn choose<'a>(logs: &'a [Log], choices: &Choices) -> Result<Choice<'a>, Impo
         unused.extend(columns.first().map(|c| Unused { column: c.name.clone(), why: question }));
         false
     });
-    Ok(Choice { chosen, unused, asked })
+    Ok(Choice { chosen, unused, asked, decided })
+}
+
+/// What is ordered of an actuator by what is measured of it.
+fn ordered(meaning: Meaning) -> Option<Meaning> {
+    match meaning {
+        Meaning::Channel(Channel::Delta) => Some(Meaning::Channel(Channel::DeltaOrder)),
+        Meaning::Channel(Channel::N) => Some(Meaning::Channel(Channel::NOrder)),
+        _ => None,
+    }
+}
+
+/// Takes the order out of the candidates for what is measured of an actuator, by what the best of them and another do: the best is the
+/// order itself only where their names say as much as each other.
+fn order_among<'a>(list: &mut Vec<Candidate<'a>>, best: &mut usize) -> Option<Candidate<'a>> {
+    let others = || (0..list.len()).filter(|i| i != best && !list[*i].forced && moves(&list[*i].columns));
+    let named = |i: usize| NAMED.iter().filter(|bound| list[i].explained > **bound).count();
+    let follower = others()
+        .find(|i| !list[*best].forced && named(*i) == named(*best) && follows(&list[*i].columns, &list[*best].columns));
+    let order = match follower {
+        Some(follower) => std::mem::replace(best, follower),
+        None => others().find(|i| follows(&list[*best].columns, &list[*i].columns))?,
+    };
+    *best -= usize::from(order < *best);
+    Some(list.remove(order))
 }
 
 /// The columns of all files by their name, in the order in which they come.

@@ -28,7 +28,7 @@ pub const PHRASES: &[(Meaning, &str)] = &[
     (
         Channel(Delta),
         "rudder, rudder angle, rud, ruder, ruderlage, ruderwinkel, ror, rorvinkel, roerhoek, roer, \
-         rudderangle, rsa, helm, barre, angle de barre, angle barre, safran, angle de safran, gouvernail, \
+         rudderangle, rsa, barre, angle de barre, angle barre, safran, angle de safran, gouvernail, \
          timone, angolo timone, angolo di timone, angolo del timone, timon, angulo timon, angulo de timon, \
          angulo del timon, angulo de pala",
     ),
@@ -84,16 +84,16 @@ pub const VAGUE: &[(Meaning, &str)] = &[
     (Channel(Y), "east, y"),
     (Channel(U), "surge"),
     (Channel(V), "sway"),
-    (Channel(Delta), "delta, δ"),
+    (Channel(Delta), "delta, δ, helm, steering gear"),
     (Channel(Psi), "ψ"),
     (Channel(R), "r"),
     (Channel(N), "n"),
 ];
 
 /// Words that change nothing of what a column is: where it is from, how it was taken, which of several.
-pub const NEUTRAL: &str = "a, actual, ais, angle, average, avg, bow, data, deg, direction, estimate, estimated, fb, feedback, \
+pub const NEUTRAL: &str = "a, act, actual, ais, angle, average, avg, bow, data, deg, direction, estimate, estimated, fb, fbk, feedback, \
          filtered, gnss, gps, ground, ins, ist, istwert, main, mean, measured, measurement, meas, mru, nav, \
-         own, pos, position, prop, propeller, raw, sensor, shaft, ship, signal, smoothed, t, true, value, \
+         own, pos, position, prop, propeller, pv, raw, sensor, shaft, ship, signal, smoothed, t, true, value, \
          vessel, vrai, wgs84, helice, elica, welle, schiff, rechtweisend, verdadero, vero, vera, over, of, \
          the, in, port, starboard, stbd, sb, ps, number, no";
 
@@ -110,8 +110,9 @@ pub const CHANGES: &str = "acceleration, accel, acc, accuracy, age, alarm, appar
 pub const MOVES: &str = "speed, velocity, vel, geschwindigkeit, vitesse, velocita, velocidad";
 
 /// Words that make a column an order rather than a measurement.
-pub const ORDERS: &str = "order, ordered, ord, command, commanded, cmd, set, setpoint, demand, demanded, desired, target, ref, \
-         reference, requested, soll, sollwert, consigne, comando, ordre, orden";
+pub const ORDERS: &str = "order, ordered, ord, command, commanded, cmd, set, setpoint, sp, demand, demanded, dmd, dem, desired, des, \
+         target, ref, reference, request, requested, req, selected, autopilot, ap, soll, sollwert, consigne, consigna, \
+         comando, impostato, impostata, ordre, orden, orde, gewenst, gewenste, bestilt";
 
 /// Words of what drives a ship.
 pub const DRIVES: &str =
