@@ -193,6 +193,32 @@ fn of_an_order_and_a_feedback_the_feedback_is_the_angle() {
 }
 
 #[test]
+fn a_column_that_names_no_sensor_is_of_none_other_and_a_letter_is_less_than_a_unit() {
+    // A speed through water that is called so by nobody, before that of the receiver.
+    let text = log(",GPS speed [kn]", |_| ",10.0".to_owned()).replace("sog_kn", "Speed [kn]");
+    assert_eq!(taken(&read(&text), "sog"), "GPS speed");
+    // A counter.
+    let text =
+        log(",n,ME speed [rpm]", |row| format!(",{},{:.1}", row.t, 120.0 + row.rudder)).replacen("rpm", "gear", 1);
+    assert_eq!(taken(&read(&text), "n"), "ME speed");
+    // Of two receivers of one rank the one that has more.
+    let text = log(",Lat 2,Lon 2", |row| format!(",{:.7},{:.7}", row.place[0], row.place[1]));
+    let half = |(i, line): (usize, &str)| {
+        let (time, rest) = line.split_once(',').unwrap();
+        let mut cells: Vec<&str> = rest.split(',').collect();
+        if i > 300 {
+            cells[..2].fill("");
+        }
+        format!("{time},{}\n", cells.join(","))
+    };
+    let text = text.replacen("lat,lon", "Lat 1,Lon 1", 1).lines().enumerate().map(half).collect::<String>();
+    assert_eq!(["lat", "lon"].map(|q| taken(&read(&text), q).to_owned()), ["Lat 2", "Lon 2"]);
+    // The heading of an autopilot is an order.
+    let text = log(",Gyrocompass [deg]", |row| format!(",{:.2}", row.heading)).replace("heading", "AP Heading [deg]");
+    assert_eq!(taken(&read(&text), "psi"), "Gyrocompass");
+}
+
+#[test]
 fn a_unit_that_is_not_known_is_asked_for_or_costs_its_column() {
     let text = log(",Depth (faden)", |_| ",20.1".to_owned());
     let imported = read(&text);

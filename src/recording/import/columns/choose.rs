@@ -135,8 +135,9 @@ fn heading_of_courses(candidates: &mut BTreeMap<Meaning, Vec<Candidate>>) {
 }
 
 /// The columns that are taken and those that are not. Candidates are ranked by what the user says, whether they
-/// contain values that change, whether the data contradict them, whether their partner is of the same sensor, how much of their name the
-/// quantity explains, whether the file states a unit that fits, and by how well they agree with the data.
+/// contain values that change, whether the data contradict them, whether their partner is of the same sensor, whether more than one letter
+/// or a unit says what they are, how much of their name the quantity explains, whether the file states a unit that fits, how well they
+/// agree with the data, and how many samples they have.
 ///
 /// # Errors
 /// [`ImportError::Choice`] for a column that no file has.
@@ -359,23 +360,34 @@ fn best(list: &[Candidate<'_>], meaning: Meaning, partner: Option<&str>, sight: 
     }
     let samples = |c: &Candidate<'_>| c.columns.iter().map(|c| c.v.len()).sum::<usize>();
     let most = list.iter().map(samples).max().unwrap_or(0);
+    let stated =
+        |c: &Candidate<'_>| c.columns.first().is_some_and(|c| c.unit.as_deref().is_some_and(|u| is_stated(meaning, u)));
+    let any_stated = list.iter().any(stated);
     let rank = |i: &usize| {
         let c = &list[*i];
         let agreement = sight.agreement(meaning, &c.columns);
-        let stated = |c: &&Column| c.unit.as_deref().is_some_and(|u| meaning.quantity().factor(u).is_some());
         (
             c.forced,
             (5 * samples(c) > most, moves(&c.columns)),
             agreement.is_none_or(|a| a > CONTRADICTED),
-            partner.is_none_or(|partner| source(partner) == source(c.name)),
+            partner.map_or(1, |partner| shared(&source(partner), &source(c.name))),
+            stated(c) || !any_stated || c.name.chars().count() > 1,
             NAMED.iter().filter(|bound| c.explained > **bound).count(),
             !is_second_choice(c.name),
-            c.columns.first().is_some_and(stated),
-            // In tenths: a closer agreement is chance.
-            agreement.map_or(5, |a| (10.0 * a) as usize),
+            stated(c),
+            // In tenths: a closer agreement is chance, and a few samples more are no better.
+            (agreement.map_or(5, |a| (10.0 * a) as usize), 10 * samples(c) / most.max(1)),
         )
     };
     (0..list.len()).rev().max_by_key(rank).unwrap_or(0)
+}
+
+/// How far two columns are of one sensor: 2 where both name the same, 0 where they name two, 1 where one of them names none.
+fn shared(one: &str, other: &str) -> u8 {
+    match (one, other) {
+        ("", _) | (_, "") => 1,
+        _ => 2 * u8::from(one == other),
+    }
 }
 
 /// Takes the quantities with which others are compared from what was just chosen.

@@ -47,14 +47,14 @@ pub const PHRASES: &[(Meaning, &str)] = &[
     ),
     (
         GroundSpeed,
-        "sog, speed over ground, ground speed, groundspeed, gps speed, speed made good, fahrt uber grund, \
+        "sog, speed over ground, ground speed, groundspeed, gps speed, speed gps, gnss speed, speed gnss, speed made good, fahrt uber grund, \
          fahrt ueber grund, fug, fart over grunn, vitesse fond, vitesse sur le fond, velocita al suolo, \
          velocita sul fondo, velocidad sobre el fondo, velocidad sobre fondo",
     ),
     (
         Channel(Psi),
         "heading, hdg, hdt, hdm, gyro, psi, yaw, compass, head, steuerkurs, kurs rechtweisend, cap, cap vrai, \
-         cap magnetique, prua, prora, angolo di prua, rumbo, rumbo verdadero, rumbo magnetico",
+         cap magnetique, gyrocompass, gyro compass, kreiselkompass, girobussola, prua, prora, angolo di prua, rumbo, rumbo verdadero, rumbo magnetico",
     ),
     (
         Channel(N),
