@@ -429,6 +429,41 @@ fn a_clock_that_steps_back_begins_a_recording_and_late_rows_do_not() {
 }
 
 #[test]
+fn a_short_piece_of_a_clock_that_starts_again_costs_no_more_than_itself() {
+    let of = |time: &dyn Fn(usize) -> f64| {
+        let text = log("", |_| String::new());
+        let rows = text.lines().enumerate().map(|(i, line)| {
+            let stamp = if i == 0 { "t [s]".to_owned() } else { format!("{:.1}", time(i - 1)) };
+            format!("{stamp},{}\n", line.split_once(',').unwrap().1)
+        });
+        read(&rows.collect::<String>())
+    };
+    // Two runs, and three rows of a third.
+    let starts = |i: usize| {
+        2.0 * [i, i.wrapping_sub(300), i.wrapping_sub(597)][usize::from(i >= 300) + usize::from(i >= 597)] as f64
+    };
+    let imported = of(&starts);
+    let lengths: Vec<usize> = imported.recordings.iter().map(|r| r.rows.t.len()).collect();
+    assert_eq!(lengths, [300, 297]);
+    let said = notes(&imported);
+    contains_all(&said, &["3 lines where its time starts again are too few for a run", "the first is line 599"]);
+    assert_eq!(said.matches("left out").count(), 1, "{said}");
+}
+
+#[test]
+fn stamps_of_minutes_and_seconds_are_counted_on_past_the_hour() {
+    let text = log("", |_| String::new());
+    let rows = text.lines().enumerate().map(|(i, line)| {
+        let s = 3000 + 2 * i.saturating_sub(1);
+        let stamp = if i == 0 { "time".to_owned() } else { format!("{:02}:{:02}.0", s / 60 % 60, s % 60) };
+        format!("{stamp},{}\n", line.split_once(',').unwrap().1)
+    });
+    let imported = read(&rows.collect::<String>());
+    assert_eq!((imported.recordings.len(), imported.recordings[0].rows.t.len()), (1, 600));
+    assert!(imported.files[0].1.contains("start again 1 times at the full hour"), "{}", imported.files[0].1);
+}
+
+#[test]
 fn files_over_one_time_are_recordings_of_their_own_or_refused() {
     let folder = tempfile::tempdir().unwrap();
     let file = |name: &str, text: &str| {

@@ -194,6 +194,34 @@ pub fn are_digits_of_day(values: &[f64]) -> bool {
     high - low > 100.0 && step <= 30.0 && finite().all(|v| v % 100.0 < 60.0 && digits_of_day(v).is_some())
 }
 
+/// Steps within which a time that starts again at the full hour follows the one before: stamps of minutes and seconds that began anew with a run
+/// do so anywhere else.
+const AT_THE_HOUR: f64 = 10.0;
+
+/// Whether a time has minutes and seconds alone, as a spreadsheet writes those that have a fraction: `59:59.0`.
+pub fn is_of_hour(text: &str) -> bool {
+    text.matches(':').count() == 1 && text.contains(['.', ',']) && time_of_day(text).is_some()
+}
+
+/// Times of minutes and seconds that go on past the full hour; gives how often.
+pub fn past_the_hour(times: &mut [f64]) -> usize {
+    let mut steps: Vec<f64> = times.windows(2).map(|t| t[1] - t[0]).filter(|s| *s > 0.0).collect();
+    if steps.is_empty() {
+        return 0;
+    }
+    let middle = steps.len() / 2;
+    let longest = AT_THE_HOUR * *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let (mut hours, mut last) = (0, f64::NAN);
+    for t in times.iter_mut().filter(|t| t.is_finite()) {
+        if *t < last && *t + 3600.0 - last <= longest {
+            hours += 1;
+        }
+        last = *t;
+        *t += 3600.0 * hours as f64;
+    }
+    hours
+}
+
 /// Times of day that go on past midnight.
 pub fn past_midnight(times: &mut [f64]) {
     let (mut days, mut last) = (0.0, f64::NAN);
@@ -372,6 +400,15 @@ mod tests {
         assert_eq!(spread(&mut times), Some(4));
         assert_eq!(times, [10.5, 10.75, 11.0, 11.25, 11.5, 11.75, 12.0, 12.25, 12.5, 12.75]);
         assert_eq!(spread(&mut [1.0, 2.0, 3.0, 4.0, 5.0]), None);
+    }
+
+    #[test]
+    fn minutes_and_seconds_go_on_past_the_hour_and_not_where_a_run_begins_anew() {
+        let mut times: Vec<f64> = (0..60).map(|i| f64::from(3570 + i) % 3600.0).collect();
+        assert_eq!((past_the_hour(&mut times), times[59]), (1, 3629.0));
+        let mut runs: Vec<f64> = (0..60).map(|i| f64::from(i % 30)).collect();
+        assert_eq!((past_the_hour(&mut runs), runs[59]), (0, 29.0));
+        assert!(is_of_hour("59:59.0") && !is_of_hour("10:59") && !is_of_hour("10:59:59.0"));
     }
 
     #[test]

@@ -2,8 +2,8 @@
 //! What a column means and its unit are not decided here, but for what its header says.
 
 use super::clock::{
-    DateOrder, NumericTime, are_digits_of_day, date_order, date_time, digits_of_day, is_date_alone, numeric_time,
-    past_midnight, spread, time_of_day, two_orders,
+    DateOrder, NumericTime, are_digits_of_day, date_order, date_time, digits_of_day, is_date_alone, is_of_hour,
+    numeric_time, past_midnight, past_the_hour, spread, time_of_day, two_orders,
 };
 use super::layout::{Delimiter, Layout, comment, decimal_comma, decoded, layout, number, too_wide};
 use super::marks::{Marks, signs};
@@ -23,6 +23,8 @@ const NUMBERS: f64 = 0.9;
 const FEW_WORDS: usize = 2;
 /// Rows that a run has at least, where a file contains several.
 const FEWEST: usize = 10;
+/// Times closer than this are one \[s\].
+const SAME_TIME: f64 = 1e-6;
 
 /// The lines of a file as fields.
 struct Table<'a> {
@@ -71,7 +73,14 @@ pub fn read_text(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<Log
         texts: texts.clone(),
         notes,
     };
-    let runs = runs(&table, &columns, clock, &t);
+    let (runs, short) = runs(&table, &columns, clock, &t);
+    if let Some(first) = short.first() {
+        table.notes.push(format!(
+            "{} lines where its time starts again are too few for a run and are left out, the first is line {}",
+            short.iter().map(Range::len).sum::<usize>(),
+            table.rows[first.start].0
+        ));
+    }
     if let [_, second, ..] = runs.as_slice() {
         let line = table.rows[second.start].0;
         table.notes.push(match clock {
@@ -79,11 +88,17 @@ pub fn read_text(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<Log
             _ => format!("its time starts again {} times: {} runs", runs.len() - 1, runs.len()),
         });
     }
+    let runs: Vec<Vec<usize>> = runs.into_iter().map(|run| run.filter(|row| t[*row].is_finite()).collect()).collect();
+    let late = runs.iter().flat_map(|run| run.windows(2)).filter(|rows| t[rows[1]] < t[rows[0]] - SAME_TIME).count();
+    if late > 0 {
+        table.notes.push(format!("{late} lines come before an earlier one and are sorted"));
+    }
     let mut logs = Vec::new();
-    for run in runs {
+    for mut run in runs {
+        run.sort_by(|a, b| t[*a].total_cmp(&t[*b]));
         let part = |(column, values): &(Column, Vec<f64>)| {
             let mut column = column.clone();
-            run.clone().for_each(|row| column.push(t[row], values[row]));
+            run.iter().for_each(|row| column.push(t[*row], values[*row]));
             column
         };
         logs.push(log(
@@ -94,9 +109,14 @@ pub fn read_text(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<Log
     Ok(logs)
 }
 
-/// The rows of each run, where the clock steps back over what it covered before, or a clock of its own starts again; all rows as one where
-/// they are merely out of order.
-fn runs(table: &Table<'_>, columns: &[(Column, Vec<f64>)], clock: Clock, t: &[f64]) -> Vec<Range<usize>> {
+/// The rows of each run, where the clock steps back over what it covered before, or a clock of its own starts again, and those of pieces that
+/// are too short for a run; all rows as one where they are merely out of order.
+fn runs(
+    table: &Table<'_>,
+    columns: &[(Column, Vec<f64>)],
+    clock: Clock,
+    t: &[f64],
+) -> (Vec<Range<usize>>, Vec<Range<usize>>) {
     let repeats = |before: Range<usize>, after: Range<usize>| {
         let copy = before.len() == after.len()
             && before.clone().zip(after.clone()).all(|(a, b)| table.rows[a].1 == table.rows[b].1);
@@ -110,9 +130,9 @@ fn runs(table: &Table<'_>, columns: &[(Column, Vec<f64>)], clock: Clock, t: &[f6
         starts.extend(restarts(t));
     }
     let ends: Vec<usize> = starts.iter().copied().skip(1).chain([t.len()]).collect();
-    let runs: Vec<Range<usize>> = starts.into_iter().zip(ends).map(|(start, end)| start..end).collect();
-    let long = clock == Clock::Utc || runs.iter().all(|run| run.len() >= FEWEST);
-    if long { runs } else { std::iter::once(0..t.len()).collect() }
+    let runs = starts.into_iter().zip(ends).map(|(start, end)| start..end);
+    let (long, short): (Vec<_>, Vec<_>) = runs.partition(|run| clock == Clock::Utc || run.len() >= FEWEST);
+    if long.is_empty() { (std::iter::once(0..t.len()).collect(), Vec::new()) } else { (long, short) }
 }
 
 /// First rows of runs that begin where time goes back to the first tenth of the run before.
@@ -280,8 +300,15 @@ fn times(table: &Table<'_>, choices: &Choices) -> Result<Times, ImportError> {
         Times { clock: Clock::Utc, t, used: vec![date, field], how }
     } else if timed {
         let mut t: Vec<f64> = rows.map(of_day).collect();
+        let hours = if texts(field).all(|t| t.is_empty() || is_of_hour(t)) { past_the_hour(&mut t) } else { 0 };
         past_midnight(&mut t);
-        Times { clock: Clock::Day, t, used: vec![field], how: format!("`{name}`, a time of day without a date") }
+        let how = match hours {
+            0 => format!("`{name}`, a time of day without a date"),
+            hours => format!(
+                "`{name}`, minutes and seconds, which start again {hours} times at the full hour and are counted on"
+            ),
+        };
+        Times { clock: Clock::Day, t, used: vec![field], how }
     } else {
         let unit = choices.units.get("t").or(table.names[field].1.as_ref()).and_then(|u| Quantity::Time.factor(u));
         let NumericTime { clock, factor, zero, words } = numeric_time(&numbers, unit);
