@@ -11,7 +11,7 @@ pub(super) mod log;
 pub(super) mod motion;
 pub(super) mod names;
 mod orders;
-mod place;
+pub(super) mod place;
 pub(super) mod signal;
 pub(super) mod take;
 mod vocabulary;

@@ -137,6 +137,29 @@ fn reordered(text: &str, order: DateOrder) -> Option<String> {
     Some(if rest.is_empty() { date } else { format!("{date}T{}", rest.replace(' ', "")) })
 }
 
+/// Seconds that a clock is ahead of UTC by the name of its column: `Time (UTC+2)`, `Zeit GMT+02:00`.
+pub fn zone(name: &str) -> Option<f64> {
+    let upper = name.to_uppercase();
+    let at = ["UTC", "GMT"].iter().find_map(|mark| upper.find(mark))?;
+    let rest = upper[at + 3..].trim_start();
+    let sign = if rest.starts_with('+') { 1.0 } else { -1.0 };
+    let rest = rest.strip_prefix(['+', '-', '\u{2212}'])?.trim_start();
+    let end = rest.find(|c: char| !c.is_ascii_digit() && c != ':').unwrap_or(rest.len());
+    let (hours, minutes) = match (rest[..end].split_once(':'), end) {
+        (Some((h, m)), _) => (h.parse::<f64>().ok()?, m.parse::<f64>().ok()?),
+        (None, 4) => (rest[..2].parse().ok()?, rest[2..4].parse().ok()?),
+        (None, _) => (rest[..end].parse().ok()?, 0.0),
+    };
+    (hours <= 14.0 && minutes < 60.0).then_some(sign * (3600.0 * hours + 60.0 * minutes))
+}
+
+/// Whether a written time has its own zone: `10:00Z`, `10:00+02:00`.
+pub fn has_zone(text: &str) -> bool {
+    let text = text.trim().trim_matches('"').trim_end();
+    let of_day = text.find(':').map_or("", |at| &text[at..]);
+    of_day.contains(['+', '-']) || ["Z", "z", "UTC", "GMT"].iter().any(|end| text.ends_with(end))
+}
+
 /// Whether a date may have the day or the month first: `05/01/2024`, `5-1-2024`.
 pub fn two_orders(text: &str) -> bool {
     let digits = text.bytes().take_while(u8::is_ascii_digit).count();
@@ -359,6 +382,22 @@ mod tests {
             assert_eq!(date_time(text, DateOrder::DayFirst), None, "{text}");
         }
         assert_eq!(written(1_714_557_603.25), "2024-05-01 10:00:03");
+    }
+
+    #[test]
+    fn the_name_of_a_column_may_have_the_zone() {
+        let cases = [
+            ("Time (UTC+2)", Some(7200.0)),
+            ("Zeit GMT-03:30", Some(-12_600.0)),
+            ("time UTC +0530", Some(19_800.0)),
+            ("Time (UTC)", None),
+            ("Time", None),
+        ];
+        for (name, seconds) in cases {
+            assert_eq!(zone(name), seconds, "{name}");
+        }
+        let own = ["2024-05-01T10:00:03Z", "2024-05-01 10:00:03+02:00", "2024-05-01 10:00 UTC"];
+        assert!(own.into_iter().all(has_zone) && !has_zone("2024-05-01 10:00:03"));
     }
 
     #[test]

@@ -3,6 +3,7 @@
 
 pub(super) mod clock;
 mod foreign;
+mod jumps;
 mod layout;
 mod marks;
 mod nmea;

@@ -2,9 +2,10 @@
 //! What a column means and its unit are not decided here, but for what its header says.
 
 use super::clock::{
-    DateOrder, NumericTime, are_digits_of_day, date_order, date_time, digits_of_day, is_date_alone, is_of_hour,
-    numeric_time, past_midnight, past_the_hour, spread, time_of_day, two_orders,
+    DateOrder, NumericTime, are_digits_of_day, date_order, date_time, digits_of_day, has_zone, is_date_alone,
+    is_of_hour, numeric_time, past_midnight, past_the_hour, spread, time_of_day, two_orders, zone,
 };
+use super::jumps::{mend, words};
 use super::layout::{Delimiter, Layout, comment, decimal_comma, decoded, layout, number, too_wide};
 use super::marks::{Marks, signs};
 use super::passes::{FEW, OTHERWISE, passes, stepped_back};
@@ -59,8 +60,14 @@ pub fn read_text(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<Log
         let count = ["no line", "one line"][table.rows.len()];
         return Err(fail(&format!("there is {count} of data; give a file with at least two")));
     }
-    let Times { clock, t, used, how } = times(&table, choices)?;
+    let Times { clock, mut t, used, how } = times(&table, choices)?;
     let columns = columns(&mut table, &used, &t);
+    // A clock of its own is set by nobody.
+    let changes = if clock == Clock::Own { Vec::new() } else { mend(&mut t, &columns, choices) };
+    if !changes.is_empty() {
+        let note = words(&changes, |row| table.rows[row].0);
+        table.notes.push(note);
+    }
     let decimal =
         if table.decimal_comma && layout.delimiter != Delimiter::Character(',') { " and decimal commas" } else { "" };
     let format = format!("text with {}{decimal}; time is {how}", layout.delimiter.words());
@@ -291,12 +298,20 @@ fn times(table: &Table<'_>, choices: &Choices) -> Result<Times, ImportError> {
     let timed = digits || most(&|t| time_of_day(t).is_some());
     let dated = date.filter(|date| timed && texts(*date).any(|t| date_time(t, order).is_some()));
     let mut times = if most(&|t| date_time(t, order).is_some()) {
-        let t = texts(field).map(|t| date_time(t, order).unwrap_or(f64::NAN)).collect();
-        let how = format!("`{name}`, a date and time (UTC where it has no zone{unsure})");
+        let t: Vec<f64> = texts(field).map(|t| date_time(t, order).unwrap_or(f64::NAN)).collect();
+        // `Time (UTC+2)` has a zone for all that have none themselves.
+        let zone = zone(name).filter(|_| !texts(field).any(has_zone));
+        let t = t.into_iter().map(|t: f64| t - zone.unwrap_or(0.0)).collect();
+        let how = match zone {
+            Some(_) => format!("`{name}`, a date and time with the zone of its name{unsure}"),
+            None => format!("`{name}`, a date and time (UTC where it has no zone{unsure})"),
+        };
         Times { clock: Clock::Utc, t, used: vec![field], how }
     } else if let Some(date) = dated {
-        let how = format!("`{}` and `{name}` (UTC{unsure})", table.names[date].0);
-        let t = rows.map(|row| day(row, date) + of_day(row)).collect();
+        let zone = [&table.names[date].0, name].into_iter().find_map(|name| zone(name)).unwrap_or(0.0);
+        let words = if zone == 0.0 { "UTC" } else { "the zone of its name" };
+        let how = format!("`{}` and `{name}` ({words}{unsure})", table.names[date].0);
+        let t = rows.map(|row| day(row, date) + of_day(row) - zone).collect();
         Times { clock: Clock::Utc, t, used: vec![date, field], how }
     } else if timed {
         let mut t: Vec<f64> = rows.map(of_day).collect();
