@@ -451,6 +451,63 @@ fn a_short_piece_of_a_clock_that_starts_again_costs_no_more_than_itself() {
 }
 
 #[test]
+fn times_are_read_in_several_columns_and_in_forms_of_their_own() {
+    let of = |names: &str, stamp: &dyn Fn(usize) -> String| {
+        let text = log("", |_| String::new());
+        let rows = text.lines().enumerate().map(|(i, line)| {
+            let s = 36_000 + 2 * i.saturating_sub(1);
+            format!("{},{}\n", if i == 0 { names.to_owned() } else { stamp(s) }, line.split_once(',').unwrap().1)
+        });
+        let imported = read(&rows.collect::<String>());
+        assert!(imported.recordings.len() == 1 && off(&imported) < 0.02, "{names}: {}", notes(&imported));
+        let rows = &imported.recordings[0].rows;
+        assert!((rows.step - 2.0).abs() < 0.01 && rows.t.len() >= 599, "{names}: {} of {} s", rows.t.len(), rows.step);
+    };
+    let [hours, minutes, seconds] = [|s: usize| s / 3600, |s: usize| s / 60 % 60, |s: usize| s % 60];
+    let six = |s| format!("2021,6,3,{},{},{}", hours(s), minutes(s), seconds(s));
+    of("YYYY,MM,DD,hh,mm,ss", &six);
+    of("Year,Month,Day,Hour,Minute,Second", &six);
+    of("Data,Ora", &|s| format!("03/06/2021,{:02}.{:02}.{:02}", hours(s), minutes(s), seconds(s)));
+    of("Time", &|s| format!("{:02}h{:02}m{:02}s", hours(s), minutes(s), seconds(s)));
+    of("Time", &|s| format!("135/{:02}:{:02}:{:02}", hours(s), minutes(s), seconds(s)));
+    of("DOY", &|s| format!("{:.8}", 135.0 + s as f64 / 86_400.0));
+    of("Hour of day", &|s| format!("{:.7}", s as f64 / 3600.0));
+}
+
+#[test]
+fn a_clock_in_any_unit_is_told_with_the_flag_that_mends_it() {
+    let text = log("", |_| String::new());
+    let with = |scale: f64, name: &str| -> String {
+        let rows = text.lines().enumerate().map(|(i, line)| {
+            let stamp = if i == 0 { name.to_owned() } else { (scale * (70.0 + 2.0 * (i - 1) as f64)).to_string() };
+            format!("{stamp},{}\n", line.split_once(',').unwrap().1)
+        });
+        rows.collect()
+    };
+    for (scale, unit) in [(1e6, "us"), (1e3, "ms"), (1.0 / 3600.0, "h")] {
+        let text = with(scale, "t");
+        let said = written(&text, &ImportSettings::default()).unwrap_err();
+        contains_all(&said, &["the track is sailed", &format!("pass `--unit t={unit}`")]);
+        let choices = Choices { units: [("t".to_owned(), unit.to_owned())].into(), ..Choices::default() };
+        let imported = written(&text, &ImportSettings { choices, ..ImportSettings::default() }).unwrap();
+        assert!(off(&imported) < 0.01, "{unit}");
+    }
+    // A time in words that nobody reads.
+    let odd: String = with(1.0, "Time").lines().map(|line| format!("after {line}\n")).collect();
+    let said = written(&odd.replacen("after ", "", 1), &ImportSettings::default()).unwrap_err();
+    contains_all(&said, &["is no time that is read here", "135/08:00:00"]);
+}
+
+#[test]
+fn a_yaw_rate_in_a_unit_that_nothing_shows_blocks_nothing() {
+    // As AIS sends it: the root of the rate.
+    let coded = |row: &Row| format!(",{:.0}", 4.733 * row.rate.abs().sqrt() * row.rate.signum());
+    let imported = read(&log(",ROT", coded));
+    assert!(imported.derive.contains(&"r") && taken(&imported, "r").is_empty());
+    contains_all(&notes(&imported), &["ROT: its unit is not known", "the yaw rate is that of the heading"]);
+}
+
+#[test]
 fn stamps_of_minutes_and_seconds_are_counted_on_past_the_hour() {
     let text = log("", |_| String::new());
     let rows = text.lines().enumerate().map(|(i, line)| {

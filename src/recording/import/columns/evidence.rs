@@ -4,6 +4,7 @@
 use super::log::{Column, Meaning};
 use super::motion::{Track, ratio, rudder_effect};
 use super::names::is_magnetic;
+use super::scale::{advice, clock};
 use super::signal::{Signal, size_below};
 use crate::numerals::sig;
 use crate::recording::{Channel, Quantity};
@@ -256,11 +257,15 @@ pub fn speed(
         (None, Some(given)) if !in_water && !(1.0 / FAR..FAR).contains(&times(given)) => {
             let (many, unit, flag) = (sig(times(given), 3), &given.unit, meaning.name());
             Err(format!(
-                "the track is sailed {many} times as fast as column `{name}` says in {unit}: is the time in another unit (`--unit t=ms`, `--unit t=min`), or are the positions? With `--unit {flag}={unit}` it is taken as it is"
+                "the track is sailed {many} times as fast as column `{name}` says in {unit}: {}. With `--unit {flag}={unit}` it is taken as it is",
+                advice(times(given))
             ))
         }
         (None, Some(given)) => Ok(as_given(given, "")),
-        (None, None) => Err(ask(meaning, name, "kn or m/s")),
+        (None, None) => {
+            let of_clock = ratio.filter(|_| !in_water).and_then(|ratio| clock(name, ratio.gain));
+            Err(of_clock.unwrap_or_else(|| ask(meaning, name, "kn or m/s")))
+        }
     }
 }
 

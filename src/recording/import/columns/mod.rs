@@ -12,6 +12,7 @@ pub(super) mod motion;
 pub(super) mod names;
 mod orders;
 pub(super) mod place;
+mod scale;
 pub(super) mod signal;
 pub(super) mod take;
 mod vocabulary;

@@ -3,8 +3,9 @@
 
 use super::log::Meaning;
 use super::vocabulary::{
-    BESIDE_SHIPS, CHANGES, CLOCKS, DRIVES, FROM_BOW, FROM_NORTH, MAGNETIC, MOVES, NEUTRAL, ORDERS, PHRASES, RELATIVE,
-    SHIPS, SINCE, SPEEDS, VAGUE, WIND, WIND_DIRECTIONS, WIND_SPEEDS, is_on, phrases,
+    BESIDE_COUNTS, BESIDE_SHIPS, CALENDAR, CHANGES, CLOCKS, COUNTS, DRIVES, FROM_BOW, FROM_NORTH, MAGNETIC, MOVES,
+    NEUTRAL, ORDERS, PHRASES, RELATIVE, SHIPS, SINCE, SPEEDS, VAGUE, WIND, WIND_DIRECTIONS, WIND_SPEEDS, is_on,
+    phrases,
 };
 use crate::recording::{Channel, Quantity, UNITS};
 use std::ops::Range;
@@ -316,7 +317,31 @@ pub fn time_rank(name: &str) -> u8 {
     if any(SINCE) {
         return 1;
     }
-    u8::from(parts.first().is_some_and(|p| p == "t") && parts.len() <= 2)
+    u8::from((parts.first().is_some_and(|p| p == "t") && parts.len() <= 2) || time_unit(name).is_some())
+}
+
+/// The unit of a time by its name: `Hour of day` counts hours, `DOY` and `Day of year` days.
+pub fn time_unit(name: &str) -> Option<&'static str> {
+    let parts = words(name);
+    if parts.join(" ").starts_with("day of") {
+        return Some("d");
+    }
+    let (unit, _) = COUNTS.iter().find(|(_, list)| parts.iter().any(|p| is_on(list, p)))?;
+    let beside = |p: &String| is_on(BESIDE_COUNTS, p) || COUNTS.iter().any(|(_, list)| is_on(list, p));
+    parts.iter().all(beside).then_some(unit)
+}
+
+/// The columns of year, month, day, hour, minute and second among these names, each the first that is left.
+pub fn calendar<'a>(names: impl Iterator<Item = &'a str>) -> Option<[usize; 6]> {
+    let names: Vec<Vec<String>> = names.map(words).collect();
+    let mut found = [usize::MAX; 6];
+    for (part, list) in CALENDAR.iter().enumerate() {
+        let is = |(i, name): &(usize, &Vec<String>)| {
+            !found[..part].contains(i) && matches!(name.as_slice(), [word] if is_on(list, word))
+        };
+        found[part] = names.iter().enumerate().find(is)?.0;
+    }
+    Some(found)
 }
 
 /// The propeller rate or its order by the unit: revolutions are counted of nothing else (`Port RPM`), but for what has a name of its own,
@@ -371,6 +396,22 @@ pub fn is_ships_name(name: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_time_in_several_columns_and_a_count_of_hours_or_days_are_known_by_their_names() {
+        let columns = |names: &'static str| calendar(names.split(' '));
+        assert_eq!(columns("YYYY MM DD hh mm ss lat lon"), Some([0, 1, 2, 3, 4, 5]));
+        assert_eq!(columns("Year lat lon Month Day Hour Minute Second"), Some([0, 3, 4, 5, 6, 7]));
+        assert_eq!((columns("year lat month day"), columns("m d h s lat lon min")), (None, None));
+        let cases = [
+            ("DOY", Some("d")),
+            ("Day of year", Some("d")),
+            ("Hour of day", Some("h")),
+            ("Engine hours", None),
+            ("Time", None),
+        ];
+        cases.iter().for_each(|(name, unit)| assert_eq!(time_unit(name), *unit, "{name}"));
+    }
 
     #[test]
     fn what_stands_in_the_place_of_a_unit_is_a_unit_or_a_word_of_the_name() {

@@ -121,6 +121,8 @@ pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportErr
             Channel::N | Channel::NOrder => rotation(*meaning, columns, given(*meaning)?.as_ref(), &known),
             Channel::Command(_) => other(*meaning, columns, given(*meaning)?.as_ref())
                 .map(|verdict| by_its_name(verdict, columns, channel)),
+            // Decided above, or left out.
+            Channel::R => continue,
             _ if signals.by.contains_key(meaning) || signals.is_asked(*meaning) => continue,
             // The unit of the surge velocity is that of both.
             Channel::V if signals.is_asked(Meaning::Channel(Channel::U)) => continue,
@@ -201,12 +203,12 @@ fn names_north(columns: &[&Column]) -> bool {
     columns.iter().any(|c| c.name.to_lowercase().contains("north"))
 }
 
-/// Channels without which nothing can be simulated, or which measure the motion: their unit must be known.
+/// Channels without which nothing can be simulated, or which measure the motion: their unit must be known. The yaw rate follows from the heading.
 pub fn needed(meaning: Meaning) -> bool {
-    use Channel::{Delta, N, Psi, R, U, V, X, Y};
+    use Channel::{Delta, N, Psi, U, V, X, Y};
     match meaning {
         Meaning::Channel(channel) => {
-            [X, Y, Psi, U, V, R, N, Delta].contains(&channel) || matches!(channel, Channel::Command(_))
+            [X, Y, Psi, U, V, N, Delta].contains(&channel) || matches!(channel, Channel::Command(_))
         }
         Meaning::WindAngle | Meaning::Variation => false,
         _ => true,
@@ -236,7 +238,13 @@ impl Signals {
                     self.asked.push(question);
                 }
             }
-            Err(question) => self.unused.push(Unused { column: name.to_owned(), why: question }),
+            Err(question) => {
+                if meaning == Meaning::Channel(Channel::R) {
+                    let text = "its unit is not known, and it is left out: the yaw rate is that of the heading";
+                    self.notes.push(format!("{name}: {text}; `--unit r=deg/min` or another takes it"));
+                }
+                self.unused.push(Unused { column: name.to_owned(), why: question });
+            }
         }
     }
 

@@ -140,6 +140,19 @@ pub const FROM_BOW: &str = "angle, twa, awa, winkel, einfallswinkel, angolo, ang
 /// Words that are a time of their own.
 pub const CLOCKS: &str = "timestamp, datetime, time, tvec, utc, epoch, unix, zeit, uhrzeit, zeitstempel, tid, tijd, heure, \
          horodatage, temps, ora, orario, tempo, hora, tiempo, fecha";
+/// Names of the columns of a year, a month, a day, an hour, a minute and a second.
+pub const CALENDAR: [&str; 6] = [
+    "year, yyyy, yy, yr, jahr, annee, anno, ano",
+    "month, mon, mo, mm, monat, mois, mese, mes",
+    "day, dd, dy, d, tag, jour, giorno, dia",
+    "hour, hours, hh, hr, h, stunde, heure, ora, hora",
+    "minute, minutes, min, mi, mm, mn, m, minuto",
+    "second, seconds, sec, ss, se, s, sekunde, seconde, secondo, segundo",
+];
+/// Words of a count of days of the year or of hours of the day, by its unit.
+pub const COUNTS: [(&str, &str); 2] = [("d", "doy, yearday, julian, jday"), ("h", "hour, hours")];
+/// Words that may stand beside them.
+pub const BESIDE_COUNTS: &str = "day, of, the, year, decimal, utc, time, number, no";
 /// Words of a time since something.
 pub const SINCE: &str = "stamp, elapsed, seconds, secs, sec, millis, secondes, segundos, secondi";
 /// Words of a column that identifies the ship of each row.

@@ -183,12 +183,22 @@ pub fn date_order<'a>(texts: impl Iterator<Item = &'a str>) -> Option<DateOrder>
 /// Hours that a time since some start may have.
 const MOST_HOURS: u32 = 10_000;
 
-/// Seconds since midnight, or since some start, of a time such as `10:03:05.25`, `10:03 PM`, `03:05.25` or `1 days 02:03:05`.
+/// The forms of times that are read, for messages.
+pub const FORMS: &str = "2024-05-14 08:00:00, 14.05.2024 08:00:00, 05/14/2024 8:00:00 AM, 20240514T080000Z, a date in one column and 08:00:00, 08.00.00 or 080000 in another, \
+year, month, day, hour, minute and second in six columns, 08h00m00s, 135/08:00:00 (day of the year), and numbers of seconds or of any unit in the name (`Time [ms]`) or passed with `--unit t=`";
+
+/// Seconds since midnight, or since some start, of a time such as `10:03:05.25`, `10:03 PM`, `03:05.25`, `10.03.05`, `10h03m05s`,
+/// `135/10:03:05` or `1 days 02:03:05`.
 pub fn time_of_day(text: &str) -> Option<f64> {
     let text = text.trim().trim_matches('"').trim_end_matches(['Z', 'z']).replace(',', ".");
-    let (days, text) = text.split_once(" days ").or_else(|| text.split_once(" day ")).unwrap_or(("0", &text));
-    let days: u8 = days.trim().parse().ok()?;
+    let parted = [" days ", " day ", "/"].iter().find_map(|mark| text.split_once(mark));
+    let (days, text) = parted.filter(|(_, time)| time.contains(':')).unwrap_or(("0", &text));
+    let days: u16 = days.trim().parse().ok()?;
     let (text, half) = half_of_day(text.trim());
+    let lettered = text.contains('h').then(|| text.replace(['h', 'm'], ":").trim_end_matches(['s', ':']).to_owned());
+    let dotted = || text.len() >= 8 && text.split('.').take(3).filter(|p| p.len() == 2 && is_digits(p)).count() == 3;
+    let dotted = (!text.contains(':') && dotted()).then(|| text.replacen('.', ":", 2));
+    let text = lettered.or(dotted).unwrap_or_else(|| text.to_owned());
     let parts: Vec<&str> = text.split(':').collect();
     let (hours, minutes, seconds) = match parts.as_slice() {
         [h, m, s] => (h.parse::<u32>().ok()?, m.parse::<u8>().ok()?, s.parse::<f64>().ok()?),
@@ -200,6 +210,21 @@ pub fn time_of_day(text: &str) -> Option<f64> {
     let possible = hours < MOST_HOURS && minutes < 60 && (0.0..61.0).contains(&seconds);
     let total = f64::from(days) * DAY + 3600.0 * f64::from(hours) + 60.0 * f64::from(minutes) + seconds;
     possible.then(|| half.shift(total)).flatten()
+}
+
+fn is_digits(text: &str) -> bool {
+    !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit())
+}
+
+/// Seconds since 1970 of year, month, day, hour, minute and second.
+pub fn calendar(parts: [f64; 6]) -> Option<f64> {
+    let [year, month, day, hour, minute, second] = parts;
+    let whole = |v: f64, range: std::ops::RangeInclusive<f64>| (range.contains(&v) && v.fract() == 0.0).then_some(v);
+    let year = whole(year, 0.0..=9000.0).map(|y| if y < 100.0 { 2000.0 + y } else { y })? as i16;
+    let (month, day) = (whole(month, 1.0..=12.0)? as i8, whole(day, 1.0..=31.0)? as i8);
+    let of_day = whole(hour, 0.0..=23.0)? * 3600.0 + whole(minute, 0.0..=59.0)? * 60.0;
+    let date = jiff::civil::Date::new(year, month, day).ok()?;
+    (0.0..61.0).contains(&second).then_some(utc(date.at(0, 0, 0, 0))? + of_day + second)
 }
 
 /// Seconds since midnight of hours, minutes and seconds in one number: `101530.25`.
@@ -422,11 +447,19 @@ mod tests {
             ("03:05.25", 185.25),
             ("1 days 00:00:01", 86_401.0),
             ("25:00:01", 90_001.0),
+            ("10.03.05", 36_185.0),
+            ("10h03m05s", 36_185.0),
+            ("10h03", 36_180.0),
+            ("135/10:03:05", 135.0 * DAY + 36_185.0),
         ];
         for (text, seconds) in cases {
             assert_eq!(time_of_day(text), Some(seconds), "{text}");
         }
-        assert_eq!(time_of_day("13:00:00 PM"), None);
+        for text in ["13:00:00 PM", "10.03", "110.03.05", "5/7", "heading"] {
+            assert_eq!(time_of_day(text), None, "{text}");
+        }
+        assert_eq!(calendar([2024.0, 5.0, 1.0, 10.0, 0.0, 3.25]), Some(1_714_557_603.25));
+        assert_eq!(calendar([2024.0, 13.0, 1.0, 10.0, 0.0, 3.25]), None);
         let clock: Vec<f64> = (0..200).map(|i| f64::from(101_500 + i / 60 * 100 + i % 60)).collect();
         assert!(are_digits_of_day(&clock) && digits_of_day(101_530.25) == Some(36_930.25));
         let seconds: Vec<f64> = (0..200).map(f64::from).collect();

@@ -2,8 +2,8 @@
 //! What a column means and its unit are not decided here, but for what its header says.
 
 use super::clock::{
-    DateOrder, NumericTime, are_digits_of_day, date_order, date_time, digits_of_day, has_zone, is_date_alone,
-    is_of_hour, numeric_time, past_midnight, past_the_hour, spread, time_of_day, two_orders, zone,
+    DateOrder, FORMS, NumericTime, are_digits_of_day, calendar, date_order, date_time, digits_of_day, has_zone,
+    is_date_alone, is_of_hour, numeric_time, past_midnight, past_the_hour, spread, time_of_day, two_orders, zone,
 };
 use super::jumps::{mend, words};
 use super::layout::{Delimiter, Layout, comment, decimal_comma, decoded, layout, number, too_wide};
@@ -12,7 +12,9 @@ use super::passes::{FEW, OTHERWISE, passes, stepped_back};
 use crate::recording::Quantity;
 use crate::recording::import::columns::choose::Choices;
 use crate::recording::import::columns::log::{Clock, Column, Log, of_text};
-use crate::recording::import::columns::names::{is_ships_name, is_unit, meaning, name_and_unit, time_rank};
+use crate::recording::import::columns::names::{
+    self, is_ships_name, is_unit, meaning, name_and_unit, time_rank, time_unit,
+};
 use crate::recording::import::error::ImportError;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -278,8 +280,25 @@ struct Times {
     how: String,
 }
 
+/// Times whose year, month, day, hour, minute and second are in columns of their own.
+fn in_columns(table: &Table<'_>) -> Option<Times> {
+    let used = names::calendar(table.names.iter().map(|(name, _)| name.as_str()))?;
+    let time = |(_, fields): &(usize, Vec<&str>)| {
+        calendar(used.map(|f| number(fields[f], table.decimal_comma).unwrap_or(f64::NAN))).unwrap_or(f64::NAN)
+    };
+    let t: Vec<f64> = table.rows.iter().map(time).collect();
+    if 2 * t.iter().filter(|t| t.is_finite()).count() < t.len() {
+        return None;
+    }
+    let named = used.map(|f| format!("`{}`", table.names[f].0)).join(", ");
+    Some(Times { clock: Clock::Utc, t, used: used.to_vec(), how: format!("{named} (UTC)") })
+}
+
 /// The time of each row.
 fn times(table: &Table<'_>, choices: &Choices) -> Result<Times, ImportError> {
+    if let Some(times) = in_columns(table).filter(|_| !choices.columns.contains_key("t")) {
+        return Ok(times);
+    }
     let field = time_field(table, choices.columns.get("t").map(String::as_str))?;
     let texts = |field: usize| table.rows.iter().map(move |(_, fields)| fields[field]);
     let first = |field: &usize| texts(*field).find(|t| !t.is_empty()).unwrap_or("");
@@ -297,7 +316,8 @@ fn times(table: &Table<'_>, choices: &Choices) -> Result<Times, ImportError> {
     let rows = 0..table.rows.len();
     let timed = digits || most(&|t| time_of_day(t).is_some());
     let dated = date.filter(|date| timed && texts(*date).any(|t| date_time(t, order).is_some()));
-    let mut times = if most(&|t| date_time(t, order).is_some()) {
+    // `08.05.10` beside a date is a time of day.
+    let mut times = if dated.is_none() && most(&|t| date_time(t, order).is_some()) {
         let t: Vec<f64> = texts(field).map(|t| date_time(t, order).unwrap_or(f64::NAN)).collect();
         // `Time (UTC+2)` has a zone for all that have none themselves.
         let zone = zone(name).filter(|_| !texts(field).any(has_zone));
@@ -325,15 +345,19 @@ fn times(table: &Table<'_>, choices: &Choices) -> Result<Times, ImportError> {
         };
         Times { clock: Clock::Day, t, used: vec![field], how }
     } else {
-        let unit = choices.units.get("t").or(table.names[field].1.as_ref()).and_then(|u| Quantity::Time.factor(u));
+        let unit =
+            choices.units.get("t").or(table.names[field].1.as_ref()).map(String::as_str).or_else(|| time_unit(name));
+        let unit = unit.and_then(|u| Quantity::Time.factor(u));
         let NumericTime { clock, factor, zero, words } = numeric_time(&numbers, unit);
         let t = numbers.iter().map(|t| (t - zero) * factor).collect();
         Times { clock, t, used: vec![field], how: format!("`{name}`, {words}") }
     };
     if times.t.iter().filter(|t| t.is_finite()).count() < 2 {
         let (line, fields) = &table.rows[0];
-        let message =
-            format!("`{}` in column `{name}` is no time; name the time column with `--column t=NAME`", fields[field]);
+        let message = format!(
+            "`{}` in column `{name}` is no time that is read here: these are {FORMS}. If another column is the time, name it with `--column t=NAME`",
+            fields[field]
+        );
         return Err(ImportError::At { path: table.path.to_owned(), line: *line, column: field + 1, message });
     }
     if rounded(table, &times)
@@ -402,7 +426,7 @@ fn time_field(table: &Table<'_>, wanted: Option<&str>) -> Result<usize, ImportEr
     best.ok_or_else(|| ImportError::File {
         path: table.path.to_owned(),
         message: format!(
-            "no column is a time; the columns are {}. Name it with `--column t=NAME`",
+            "no column is a time; the columns are {}. Name it with `--column t=NAME`; times that are read are {FORMS}",
             names().collect::<Vec<_>>().join(", ")
         ),
     })
