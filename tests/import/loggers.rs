@@ -90,9 +90,15 @@ fn notes(imported: &Imported) -> String {
 
 /// The largest difference of the headings that were imported from those that were sailed [deg].
 fn off(imported: &Imported) -> f64 {
+    off_by(imported, 0.0)
+}
+
+/// The same from headings so many degrees more.
+fn off_by(imported: &Imported, more: f64) -> f64 {
     let rows = sailed(0.0);
     let psi = channel(imported, 0, Channel::Psi);
-    let apart = |(psi, row): (&f64, &Row)| ((psi / DEGREE - row.heading + 180.0).rem_euclid(360.0) - 180.0).abs();
+    let apart =
+        |(psi, row): (&f64, &Row)| ((psi / DEGREE - row.heading - more + 180.0).rem_euclid(360.0) - 180.0).abs();
     psi.iter().zip(&rows).map(apart).fold(0.0, f64::max)
 }
 
@@ -245,6 +251,26 @@ fn a_pair_is_of_one_sensor() {
     let text = text.replace("time,lat,lon", "time,GPS1 lat,GPS1 lon");
     let imported = written(&text, &ImportSettings { choices: second, ..ImportSettings::default() }).unwrap();
     assert_eq!(taken(&imported, "lon"), "GPS2 lon");
+}
+
+#[test]
+fn columns_of_one_name_are_columns_of_their_own() {
+    let off = |row: &Row| (row.heading + 20.0).rem_euclid(360.0);
+    // One that is dead comes first, one that is as sound comes second and is passed for the heading.
+    let text = log("", |_| String::new());
+    let dead = |(i, line): (usize, &str)| {
+        let (time, rest) = line.split_once(',').unwrap();
+        format!("{time},{},{rest}\n", if i == 0 { "heading" } else { "123.0" })
+    };
+    let imported = read(&text.lines().enumerate().map(dead).collect::<String>());
+    assert_eq!(taken(&imported, "psi"), "heading (2)");
+    assert!(off_by(&imported, 0.0) < 0.01);
+    let text = log(",heading", |row| format!(",{:.2}", off(row)));
+    assert_eq!(taken(&read(&text), "psi"), "heading");
+    let columns = [("psi".to_owned(), "Heading (2)".to_owned())].into();
+    let settings = ImportSettings { choices: Choices { columns, ..Choices::default() }, ..ImportSettings::default() };
+    let imported = written(&text, &settings).unwrap();
+    assert!(off_by(&imported, 20.0) < 0.01);
 }
 
 #[test]

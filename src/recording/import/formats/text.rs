@@ -244,8 +244,21 @@ fn table<'a>(path: &'a Path, text: &'a str, layout: &Layout) -> Result<Table<'a>
             "there is no line of column names: columns are called by their number from 1 (`--column psi=4`)".to_owned(),
         );
     }
+    number_equal(&mut names);
     let decimal_comma = commas(path, &rows, layout)?;
     Ok(Table { path, names, decimal_comma, rows, texts: Vec::new(), notes })
+}
+
+/// Numbers the columns of one name from the second on, as `Heading (2)`: they are columns of their own.
+fn number_equal(names: &mut [(String, Option<String>)]) {
+    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+    for (name, _) in names {
+        let count = counts.entry(name.clone()).or_default();
+        *count += 1;
+        if *count > 1 {
+            *name = format!("{name} ({count})").trim().to_owned();
+        }
+    }
 }
 
 /// Whether a comma separates fractions.
