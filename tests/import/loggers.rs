@@ -534,6 +534,23 @@ fn a_yaw_rate_in_a_unit_that_nothing_shows_blocks_nothing() {
 }
 
 #[test]
+fn a_header_of_another_width_and_a_line_that_may_be_cut_are_told() {
+    let text = log("", |_| String::new());
+    let none = ImportSettings::default();
+    for names in [NAMES.replace("rudder", "rudder [deg, + port]"), NAMES.replace("heading", "\"heading\n[deg]\"")] {
+        let said = written(&text.replacen(NAMES, &names, 1), &none).unwrap_err();
+        contains_all(&said, &[":1:1: this line names columns", "where the lines of data have 8", "in quotes"]);
+    }
+    let groups = text.replacen(NAMES, "time,GPS,,,,Steering,,Engine\n,lat,lon,sog_kn,cog,heading,rudder,rpm", 1);
+    assert_eq!(taken(&read(&groups), "delta"), "rudder");
+    // The last number is 1 of 120: the file was cut.
+    let cut = read(text.trim_end().strip_suffix("20").unwrap());
+    assert_eq!(cut.recordings[0].rows.t.len(), 599);
+    contains_all(&notes(&cut), &["line 601, the last, has no end"]);
+    assert_eq!(read(text.trim_end()).recordings[0].rows.t.len(), 600);
+}
+
+#[test]
 fn stamps_of_minutes_and_seconds_are_counted_on_past_the_hour() {
     let text = log("", |_| String::new());
     let rows = text.lines().enumerate().map(|(i, line)| {

@@ -3,6 +3,7 @@
 
 pub(super) mod clock;
 mod foreign;
+mod header;
 mod jumps;
 mod layout;
 mod marks;

@@ -5,6 +5,7 @@ use super::clock::{
     DateOrder, FORMS, NumericTime, are_digits_of_day, calendar, date_order, date_time, digits_of_day, has_zone,
     is_date_alone, is_of_hour, numeric_time, past_midnight, past_the_hour, spread, time_of_day, two_orders, zone,
 };
+use super::header::{Header, header};
 use super::jumps::{mend, words};
 use super::layout::{Delimiter, Layout, comment, decimal_comma, decoded, layout, number, too_wide};
 use super::marks::{Marks, signs};
@@ -12,9 +13,7 @@ use super::passes::{FEW, OTHERWISE, passes, stepped_back};
 use crate::recording::Quantity;
 use crate::recording::import::columns::choose::Choices;
 use crate::recording::import::columns::log::{Clock, Column, Log, of_text};
-use crate::recording::import::columns::names::{
-    self, is_ships_name, is_unit, meaning, name_and_unit, time_rank, time_unit,
-};
+use crate::recording::import::columns::names::{self, is_ships_name, meaning, time_rank, time_unit};
 use crate::recording::import::error::ImportError;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -56,7 +55,8 @@ pub fn read_text(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<Log
     let layout = layout(&text).ok_or_else(|| {
         fail("no columns are found: lines have no number of fields in common. Give a CSV (commas, semicolons, tabs, upright strokes or blanks), NMEA 0183 or Parquet file")
     })?;
-    let mut table = table(path, &text, &layout)?;
+    let numbered = |name: &String| name.parse::<usize>().is_ok();
+    let mut table = table(path, &text, &layout, !choices.columns.values().any(numbered))?;
     one_ship(&table)?;
     if table.rows.len() < 2 {
         let count = ["no line", "one line"][table.rows.len()];
@@ -190,40 +190,22 @@ fn one_ship(table: &Table<'_>) -> Result<(), ImportError> {
     Ok(())
 }
 
-/// The lines below the header, and what the header says.
-fn table<'a>(path: &'a Path, text: &'a str, layout: &Layout) -> Result<Table<'a>, ImportError> {
-    let mut lines = text.lines().enumerate().skip(layout.first - 1).map(|(i, line)| (i + 1, line)).peekable();
+/// The lines below the header, and what the header says; `by_name` where the user calls no column by its number.
+fn table<'a>(path: &'a Path, text: &'a str, layout: &Layout, by_name: bool) -> Result<Table<'a>, ImportError> {
     let is_value = |f: &&str| number(f, true).is_some_and(f64::is_finite) || is_time(f);
-    let names_columns = |fields: &[&str]| fields.iter().filter(|f| is_value(f)).count() * 2 < fields.len();
-    let mut header: Vec<&str> = lines.peek().map_or_else(Vec::new, |(_, line)| layout.fields(line));
-    let mut named = names_columns(&header);
-    if named {
-        lines.next();
-    } else if let Some(line) =
-        text.lines().take(layout.first - 1).filter(|l| !l.trim().is_empty()).last().and_then(comment)
-    {
-        // The names may be in the last comment before the data.
-        header = layout.fields(line);
-        named = header.len() == layout.width && names_columns(&header);
+    let Header { mut names, fields: header, first, misfit } = header(text, layout, is_value);
+    if let Some((line, count)) = misfit.filter(|_| by_name) {
+        let width = layout.width;
+        let message = format!(
+            "this line names columns, and has {count} fields where the lines of data have {width}: write the names in one line, each that contains a separator of fields in quotes, or take the line out and call the columns by their number (`--column psi=4`)"
+        );
+        return Err(ImportError::At { path: path.to_owned(), line, column: 1, message });
     }
-    let mut names: Vec<(String, Option<String>)> = if named {
-        header.iter().map(|f| name_and_unit(f)).collect()
-    } else {
-        (1..=layout.width).map(|i| (i.to_string(), None)).collect()
-    };
-    // A second line of the header may contain the units.
-    let second: Vec<&str> = lines.peek().map_or_else(Vec::new, |(_, line)| layout.fields(line));
-    let unit_of = |f: &str| f.trim_matches(['[', ']', '(', ')']).trim().to_owned();
-    if named && second.iter().any(|f| is_unit(&unit_of(f))) && !second.iter().any(is_value) {
-        lines.next();
-        for (name, unit) in names.iter_mut().zip(second) {
-            name.1 = Some(unit_of(unit)).filter(|u| is_unit(u)).or(name.1.take());
-        }
-    }
+    let lines = text.lines().enumerate().map(|(i, line)| (i + 1, line)).skip(first - 1);
     let (mut rows, mut damaged, mut repeated) = (Vec::new(), Vec::new(), 0);
     for (line, content) in lines.filter(|(_, l)| !l.trim().is_empty() && comment(l).is_none()) {
         let fields = layout.fields(content);
-        if named && fields == header {
+        if header.as_ref() == Some(&fields) {
             repeated += 1;
         } else if fields.len() == names.len() {
             rows.push((line, fields));
@@ -232,6 +214,10 @@ fn table<'a>(path: &'a Path, text: &'a str, layout: &Layout) -> Result<Table<'a>
         }
     }
     let mut notes = Vec::new();
+    if !text.ends_with('\n') && is_cut(&rows) {
+        let line = rows.pop().map_or(0, |(line, _)| line);
+        notes.push(format!("line {line}, the last, has no end, and its last number fewer figures than any other there: it may be cut, and is left out"));
+    }
     if let Some(first) = damaged.first() {
         let (count, width) = (damaged.len(), names.len());
         notes.push(format!("{count} lines do not have {width} fields and are left out, the first is line {first}"));
@@ -239,7 +225,7 @@ fn table<'a>(path: &'a Path, text: &'a str, layout: &Layout) -> Result<Table<'a>
     if repeated > 0 {
         notes.push(format!("the line of column names comes {repeated} times more and is left out"));
     }
-    if !named {
+    if header.is_none() {
         notes.push(
             "there is no line of column names: columns are called by their number from 1 (`--column psi=4`)".to_owned(),
         );
@@ -259,6 +245,13 @@ fn number_equal(names: &mut [(String, Option<String>)]) {
             *name = format!("{name} ({count})").trim().to_owned();
         }
     }
+}
+
+/// Whether the last field of the last row is shorter than in every other row.
+fn is_cut(rows: &[(usize, Vec<&str>)]) -> bool {
+    let Some(((_, last), others)) = rows.split_last() else { return false };
+    let length = |fields: &[&str]| fields.last().map_or(0, |f| f.len());
+    !others.is_empty() && others.iter().all(|(_, fields)| length(fields) > length(last))
 }
 
 /// Whether a comma separates fractions.
