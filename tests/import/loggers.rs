@@ -90,9 +90,15 @@ fn notes(imported: &Imported) -> String {
 
 /// The largest difference of the headings that were imported from those that were sailed [deg].
 fn off(imported: &Imported) -> f64 {
+    off_by(imported, 0.0)
+}
+
+/// The same from headings so many degrees more.
+fn off_by(imported: &Imported, more: f64) -> f64 {
     let rows = sailed(0.0);
     let psi = channel(imported, 0, Channel::Psi);
-    let apart = |(psi, row): (&f64, &Row)| ((psi / DEGREE - row.heading + 180.0).rem_euclid(360.0) - 180.0).abs();
+    let apart =
+        |(psi, row): (&f64, &Row)| ((psi / DEGREE - row.heading - more + 180.0).rem_euclid(360.0) - 180.0).abs();
     psi.iter().zip(&rows).map(apart).fold(0.0, f64::max)
 }
 
@@ -152,6 +158,88 @@ fn of_columns_that_are_named_alike_the_one_that_agrees_with_the_data_is_taken() 
 }
 
 #[test]
+fn of_an_order_and_a_feedback_the_feedback_is_the_angle() {
+    // The order leaps; what is recorded as the rudder follows it at two and a half degrees a second.
+    let orders: Vec<String> = sailed(0.0).iter().map(|row| format!("{:.1}", row.rudder)).collect();
+    let mut angle = 0.0_f64;
+    let follow = |order: &String| {
+        angle += (order.parse::<f64>().unwrap() - angle).clamp(-2.0, 2.0);
+        format!("{angle:.2}")
+    };
+    let angles: Vec<String> = orders.iter().map(follow).collect();
+    let of = |first: &str, second: &str, swapped: bool| {
+        let text = log("", |_| String::new());
+        let rows = text.lines().enumerate().map(|(i, line)| {
+            let mut cells: Vec<&str> = line.split(',').collect();
+            let both = [&orders, &angles].map(|column| if i == 0 { "" } else { column[i - 1].as_str() });
+            let [a, b] = if i == 0 { [first, second] } else { both };
+            cells.splice(6..7, if swapped { [b, a] } else { [a, b] });
+            cells.join(",") + "\n"
+        });
+        read(&rows.collect::<String>())
+    };
+    for (order, rudder) in [
+        ("Rudder SP", "Rudder PV"),
+        ("Rudder Dmd", "Rudder Act"),
+        ("Consigna timón", "Ángulo de timón"),
+        ("Autopilot rudder", "Steering gear position"),
+        ("Helm", "Rudder"),
+        ("rudder 1", "rudder 2"),
+        ("rudder", "rudder angle"),
+    ] {
+        for swapped in [false, true] {
+            let imported = of(order, rudder, swapped);
+            let found = ["delta", "delta_order"].map(|q| taken(&imported, q));
+            assert_eq!(found, [rudder, order], "{:?}", imported.unused);
+        }
+    }
+    let evidence =
+        |imported: &Imported| imported.taken.iter().find(|t| t.quantity == "delta").unwrap().evidence.clone();
+    contains_all(&evidence(&of("rudder 1", "rudder 2", false)), &["`rudder 1` leads it and leaps faster"]);
+}
+
+#[test]
+fn a_column_that_names_no_sensor_is_of_none_other_and_a_letter_is_less_than_a_unit() {
+    // A speed through water that is called so by nobody, before that of the receiver.
+    let text = log(",GPS speed [kn]", |_| ",10.0".to_owned()).replace("sog_kn", "Speed [kn]");
+    assert_eq!(taken(&read(&text), "sog"), "GPS speed");
+    // A counter.
+    let text =
+        log(",n,ME speed [rpm]", |row| format!(",{},{:.1}", row.t, 120.0 + row.rudder)).replacen("rpm", "gear", 1);
+    assert_eq!(taken(&read(&text), "n"), "ME speed");
+    // Of two receivers of one rank the one that has more.
+    let text = log(",Lat 2,Lon 2", |row| format!(",{:.7},{:.7}", row.place[0], row.place[1]));
+    let half = |(i, line): (usize, &str)| {
+        let (time, rest) = line.split_once(',').unwrap();
+        let mut cells: Vec<&str> = rest.split(',').collect();
+        if i > 300 {
+            cells[..2].fill("");
+        }
+        format!("{time},{}\n", cells.join(","))
+    };
+    let text = text.replacen("lat,lon", "Lat 1,Lon 1", 1).lines().enumerate().map(half).collect::<String>();
+    assert_eq!(["lat", "lon"].map(|q| taken(&read(&text), q).to_owned()), ["Lat 2", "Lon 2"]);
+    // The heading of an autopilot is an order.
+    let text = log(",Gyrocompass [deg]", |row| format!(",{:.2}", row.heading)).replace("heading", "AP Heading [deg]");
+    assert_eq!(taken(&read(&text), "psi"), "Gyrocompass");
+}
+
+#[test]
+fn a_unit_that_is_not_known_is_asked_for_or_costs_its_column() {
+    let text = log(",Depth (faden)", |_| ",20.1".to_owned());
+    let imported = read(&text);
+    assert!(taken(&imported, "depth").is_empty());
+    let why = &imported.unused.iter().find(|u| u.column == "Depth").unwrap().why;
+    contains_all(why, &["the unit `faden` of column `Depth`", "is not known: pass `--unit depth=m or "]);
+    let text = text.replacen("rudder", "rudder [increments]", 1);
+    let said = written(&text, &ImportSettings::default()).unwrap_err();
+    contains_all(&said, &["the unit `increments` of column `rudder`", "`--unit delta=rad or deg"]);
+    let choices = Choices { units: [("delta".to_owned(), "deg".to_owned())].into(), ..Choices::default() };
+    let imported = written(&text, &ImportSettings { choices, ..ImportSettings::default() }).unwrap();
+    assert_eq!(taken(&imported, "delta"), "rudder");
+}
+
+#[test]
 fn a_pair_is_of_one_sensor() {
     let text = log(",GPS2 lon,GPS2 lat,STW Trans [kn],STW Long [kn]", |row| {
         format!(",{:.6},{:.6},0.1,9.8", row.place[1] + 0.001, row.place[0])
@@ -163,6 +251,26 @@ fn a_pair_is_of_one_sensor() {
     let text = text.replace("time,lat,lon", "time,GPS1 lat,GPS1 lon");
     let imported = written(&text, &ImportSettings { choices: second, ..ImportSettings::default() }).unwrap();
     assert_eq!(taken(&imported, "lon"), "GPS2 lon");
+}
+
+#[test]
+fn columns_of_one_name_are_columns_of_their_own() {
+    let off = |row: &Row| (row.heading + 20.0).rem_euclid(360.0);
+    // One that is dead comes first, one that is as sound comes second and is passed for the heading.
+    let text = log("", |_| String::new());
+    let dead = |(i, line): (usize, &str)| {
+        let (time, rest) = line.split_once(',').unwrap();
+        format!("{time},{},{rest}\n", if i == 0 { "heading" } else { "123.0" })
+    };
+    let imported = read(&text.lines().enumerate().map(dead).collect::<String>());
+    assert_eq!(taken(&imported, "psi"), "heading (2)");
+    assert!(off_by(&imported, 0.0) < 0.01);
+    let text = log(",heading", |row| format!(",{:.2}", off(row)));
+    assert_eq!(taken(&read(&text), "psi"), "heading");
+    let columns = [("psi".to_owned(), "Heading (2)".to_owned())].into();
+    let settings = ImportSettings { choices: Choices { columns, ..Choices::default() }, ..ImportSettings::default() };
+    let imported = written(&text, &settings).unwrap();
+    assert!(off_by(&imported, 20.0) < 0.01);
 }
 
 #[test]
@@ -344,6 +452,144 @@ fn a_clock_that_steps_back_begins_a_recording_and_late_rows_do_not() {
         let imported = read(&(text.join("\n") + "\n"));
         assert_eq!((imported.recordings.len(), imported.recordings[0].rows.t.len()), (1, 600));
     }
+}
+
+#[test]
+fn a_short_piece_of_a_clock_that_starts_again_costs_no_more_than_itself() {
+    let of = |time: &dyn Fn(usize) -> f64| {
+        let text = log("", |_| String::new());
+        let rows = text.lines().enumerate().map(|(i, line)| {
+            let stamp = if i == 0 { "t [s]".to_owned() } else { format!("{:.1}", time(i - 1)) };
+            format!("{stamp},{}\n", line.split_once(',').unwrap().1)
+        });
+        read(&rows.collect::<String>())
+    };
+    // Two runs, and three rows of a third.
+    let starts = |i: usize| {
+        2.0 * [i, i.wrapping_sub(300), i.wrapping_sub(597)][usize::from(i >= 300) + usize::from(i >= 597)] as f64
+    };
+    let imported = of(&starts);
+    let lengths: Vec<usize> = imported.recordings.iter().map(|r| r.rows.t.len()).collect();
+    assert_eq!(lengths, [300, 297]);
+    let said = notes(&imported);
+    contains_all(&said, &["3 lines where its time starts again are too few for a run", "the first is line 599"]);
+    assert_eq!(said.matches("left out").count(), 1, "{said}");
+}
+
+#[test]
+fn times_are_read_in_several_columns_and_in_forms_of_their_own() {
+    let of = |names: &str, stamp: &dyn Fn(usize) -> String| {
+        let text = log("", |_| String::new());
+        let rows = text.lines().enumerate().map(|(i, line)| {
+            let s = 36_000 + 2 * i.saturating_sub(1);
+            format!("{},{}\n", if i == 0 { names.to_owned() } else { stamp(s) }, line.split_once(',').unwrap().1)
+        });
+        let imported = read(&rows.collect::<String>());
+        assert!(imported.recordings.len() == 1 && off(&imported) < 0.02, "{names}: {}", notes(&imported));
+        let rows = &imported.recordings[0].rows;
+        assert!((rows.step - 2.0).abs() < 0.01 && rows.t.len() >= 599, "{names}: {} of {} s", rows.t.len(), rows.step);
+    };
+    let [hours, minutes, seconds] = [|s: usize| s / 3600, |s: usize| s / 60 % 60, |s: usize| s % 60];
+    let six = |s| format!("2021,6,3,{},{},{}", hours(s), minutes(s), seconds(s));
+    of("YYYY,MM,DD,hh,mm,ss", &six);
+    of("Year,Month,Day,Hour,Minute,Second", &six);
+    of("Data,Ora", &|s| format!("03/06/2021,{:02}.{:02}.{:02}", hours(s), minutes(s), seconds(s)));
+    of("Time", &|s| format!("{:02}h{:02}m{:02}s", hours(s), minutes(s), seconds(s)));
+    of("Time", &|s| format!("135/{:02}:{:02}:{:02}", hours(s), minutes(s), seconds(s)));
+    of("DOY", &|s| format!("{:.8}", 135.0 + s as f64 / 86_400.0));
+    of("Hour of day", &|s| format!("{:.7}", s as f64 / 3600.0));
+}
+
+#[test]
+fn a_clock_in_any_unit_is_told_with_the_flag_that_mends_it() {
+    let text = log("", |_| String::new());
+    let with = |scale: f64, name: &str| -> String {
+        let rows = text.lines().enumerate().map(|(i, line)| {
+            let stamp = if i == 0 { name.to_owned() } else { (scale * (70.0 + 2.0 * (i - 1) as f64)).to_string() };
+            format!("{stamp},{}\n", line.split_once(',').unwrap().1)
+        });
+        rows.collect()
+    };
+    for (scale, unit) in [(1e6, "us"), (1e3, "ms"), (1.0 / 3600.0, "h")] {
+        let text = with(scale, "t");
+        let said = written(&text, &ImportSettings::default()).unwrap_err();
+        contains_all(&said, &["the track is sailed", &format!("pass `--unit t={unit}`")]);
+        let choices = Choices { units: [("t".to_owned(), unit.to_owned())].into(), ..Choices::default() };
+        let imported = written(&text, &ImportSettings { choices, ..ImportSettings::default() }).unwrap();
+        assert!(off(&imported) < 0.01, "{unit}");
+    }
+    // A time in words that nobody reads.
+    let odd: String = with(1.0, "Time").lines().map(|line| format!("after {line}\n")).collect();
+    let said = written(&odd.replacen("after ", "", 1), &ImportSettings::default()).unwrap_err();
+    contains_all(&said, &["is no time that is read here", "135/08:00:00"]);
+}
+
+#[test]
+fn a_yaw_rate_in_a_unit_that_nothing_shows_blocks_nothing() {
+    // As AIS sends it: the root of the rate.
+    let coded = |row: &Row| format!(",{:.0}", 4.733 * row.rate.abs().sqrt() * row.rate.signum());
+    let imported = read(&log(",ROT", coded));
+    assert!(imported.derive.contains(&"r") && taken(&imported, "r").is_empty());
+    contains_all(&notes(&imported), &["ROT: its unit is not known", "the yaw rate is that of the heading"]);
+}
+
+#[test]
+fn a_header_of_another_width_and_a_line_that_may_be_cut_are_told() {
+    let text = log("", |_| String::new());
+    let none = ImportSettings::default();
+    for names in [NAMES.replace("rudder", "rudder [deg, + port]"), NAMES.replace("heading", "\"heading\n[deg]\"")] {
+        let said = written(&text.replacen(NAMES, &names, 1), &none).unwrap_err();
+        contains_all(&said, &[":1:1: this line names columns", "where the lines of data have 8", "in quotes"]);
+    }
+    let groups = text.replacen(NAMES, "time,GPS,,,,Steering,,Engine\n,lat,lon,sog_kn,cog,heading,rudder,rpm", 1);
+    assert_eq!(taken(&read(&groups), "delta"), "rudder");
+    // The last number is 1 of 120: the file was cut.
+    let cut = read(text.trim_end().strip_suffix("20").unwrap());
+    assert_eq!(cut.recordings[0].rows.t.len(), 599);
+    contains_all(&notes(&cut), &["line 601, the last, has no end"]);
+    assert_eq!(read(text.trim_end()).recordings[0].rows.t.len(), 600);
+}
+
+#[test]
+fn stamps_of_minutes_and_seconds_are_counted_on_past_the_hour() {
+    let text = log("", |_| String::new());
+    let rows = text.lines().enumerate().map(|(i, line)| {
+        let s = 3000 + 2 * i.saturating_sub(1);
+        let stamp = if i == 0 { "time".to_owned() } else { format!("{:02}:{:02}.0", s / 60 % 60, s % 60) };
+        format!("{stamp},{}\n", line.split_once(',').unwrap().1)
+    });
+    let imported = read(&rows.collect::<String>());
+    assert_eq!((imported.recordings.len(), imported.recordings[0].rows.t.len()), (1, 600));
+    assert!(imported.files[0].1.contains("start again 1 times at the full hour"), "{}", imported.files[0].1);
+}
+
+#[test]
+fn a_clock_that_is_changed_while_the_ship_sails_on_is_mended_and_one_with_a_zone_is_brought_to_utc() {
+    let of = |name: &str, stamp: &dyn Fn(usize) -> String| {
+        let text = log("", |_| String::new());
+        let rows = text.lines().enumerate().map(|(i, line)| {
+            format!("{},{}\n", if i == 0 { name.to_owned() } else { stamp(i - 1) }, line.split_once(',').unwrap().1)
+        });
+        read(&rows.collect::<String>())
+    };
+    let clock = |s: usize| format!("2021-06-03 {:02}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
+    let one = |imported: &Imported, start: &str| {
+        assert_eq!((imported.recordings.len(), imported.recordings[0].rows.t.len()), (1, 600), "{}", notes(imported));
+        assert_eq!(imported.recordings[0].start.as_deref(), Some(start));
+        assert!(off(imported) < 0.01);
+    };
+    let summer = of("time", &|i| clock(36_000 + 2 * i + if i < 300 { 0 } else { 3600 }));
+    one(&summer, "2021-06-03 10:00:00");
+    contains_all(&notes(&summer), &["its clock goes 1 h forward at line 302 while the ship sails 10 m: summer time"]);
+    let winter = of("time", &|i| clock(36_000 + 2 * i - if i < 300 { 0 } else { 3600 }));
+    one(&winter, "2021-06-03 10:00:00");
+    contains_all(&notes(&winter), &["its clock goes 1 h back at line 302"]);
+    // From 12:50 to 1:10, without AM and PM.
+    let twelve = of("time", &|i| clock(46_200 + 2 * i - if i < 300 { 0 } else { 43_200 }));
+    one(&twelve, "2021-06-03 12:50:00");
+    contains_all(&notes(&twelve), &["12 h back", "a clock of 12 hours without AM and PM"]);
+    let zone = of("Time (UTC+2)", &|i| clock(36_000 + 2 * i));
+    one(&zone, "2021-06-03 08:00:00");
 }
 
 #[test]
@@ -546,7 +792,7 @@ fn inputs_that_once_failed_are_right() {
     each("08", "hdg.nmea", &|i| assert!(mean(channel(i, 0, Channel::V)).abs() < 0.1));
     each("10", "local.csv", &|i| {
         let rows: Vec<usize> = i.recordings.iter().map(|r| r.rows.t.len()).collect();
-        assert_eq!((rows.len(), rows.iter().sum::<usize>()), (2, 1201));
+        assert_eq!(rows, [1201]);
     });
     each("16", "ais.csv", &|i| contains_all(&i.lost(59.0).unwrap(), &["`--bridge", "recorded minutes"]));
     each("22", "dma.csv", &|i| assert!(channel(i, 0, Channel::R).iter().all(|r| r.is_finite())));

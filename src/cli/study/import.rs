@@ -26,10 +26,12 @@ Makes a study folder of the files that ships and loggers write, so that `trimtab
 
 Reads, by content and not by name:
   text        commas, semicolons, tabs, upright strokes or blanks; decimal points or commas; times as
-              ISO 8601, with the name of the month, date and time apart, of twelve hours, seconds or
-              milliseconds since 1970, days of a spreadsheet or of MATLAB, or seconds from any start
-              (another unit by --unit t=ms); latitude and longitude in degrees, as dddmm.mmm or as
-              51°30.25'N; letters of the hemisphere or of the rudder's side beside the number or in a
+              ISO 8601, with the name of the month, date and time apart, in six columns from year to
+              second, of twelve hours, with the day of the year, seconds or milliseconds since 1970,
+              days of a spreadsheet or of MATLAB, or seconds from any start (another unit by --unit
+              t=ms); a zone in the name of the column, Time (UTC+2), is taken out; latitude and
+              longitude in degrees, whole 1e-7 deg, radians or minutes by their unit, as dddmm.mmm or as
+              51°30.25'N; two columns of one name are two columns, Heading and Heading (2); letters of the hemisphere or of the rudder's side beside the number or in a
               column of their own; fields may be empty, and each column may have its own rate; a time
               that starts again begins another recording
   NMEA 0183   RMC GGA GLL VTG HDT THS HDG HDM ROT RSA RPM VHW VBW MWV MWD VWR DPT ZDA; checksums are
@@ -40,8 +42,10 @@ Reads, by content and not by name:
 The answer lists what each column is taken for, with the evidence. Of several columns for one quantity the one is \
     taken whose name says it most fully, and which agrees with the data. Units and signs are decided from the data \
     where they determine them: heading and course by the track, speed by the speed of the track, yaw rate by the \
-    heading, rudder by its size and by the way the ship turns, propeller rate by its size. What the data do \
-    not determine is asked for, everything in one message.
+    heading, rudder by its size and by the way the ship turns, propeller rate by its size. What stands in the place \
+    of a unit and is none that is known is asked for. Of two columns of one actuator that names do not part, the one \
+    that leads the other and leaps faster is the order. What the data do not determine is asked for, everything in \
+    one message.
 
 Positions become metres sailed north and east on WGS84. Without u and v these \
     are u = SOG cos(COG - heading), v = SOG sin(COG - heading), over ground at the antenna, or derived \
@@ -49,8 +53,9 @@ Positions become metres sailed north and east on WGS84. Without u and v these \
 
 No gap is filled, but by --bridge and from channels with the same content (the yaw rate from the heading): \
     a row without a value keeps an empty field, a gap longer than --session-gap ends a recording, and a run \
-    ends at every gap; the answer says what that costs. A clock that steps back, and a second file over the same \
-    time, make a recording of their own. Channels of other rates are brought to the rows of the slower \
+    ends at every gap; the answer says what that costs. A clock that changes by whole hours while the ship sails on \
+    (summer time, twelve hours without AM and PM) is counted on, with a note. Any other clock that steps back, and a \
+    second file over the same time, make a recording of their own. Channels of other rates are brought to the rows of the slower \
     of position and heading: a faster one as its mean over a step, a slower one on straight lines between \
     two successive samples.";
 

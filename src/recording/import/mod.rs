@@ -7,14 +7,15 @@ mod formats;
 mod gaps;
 mod overlap;
 mod rows;
+mod signals;
 mod study;
 mod whole;
 
 pub use columns::choose::{Choices, Unused};
-pub use columns::log::{Clock, Column, Log, Meaning};
 pub use columns::take::Taken;
 pub use error::ImportError;
 pub use formats::read::read_bytes;
 pub use rows::Rows;
+pub use signals::log::{Clock, Column, Log, Meaning};
 pub use study::{Origins, recording_csv, study_files};
 pub use whole::{ImportSettings, Imported, ImportedRecording, SESSION_GAP, Velocity, import};

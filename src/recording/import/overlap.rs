@@ -3,10 +3,10 @@
 
 use super::columns::actuators::by_names;
 use super::columns::choose::Choices;
-use super::columns::log::{Clock, Column, Log, Meaning};
 use super::error::{ImportError, flag};
 use super::formats::clock::written;
 use super::formats::passes::FEW;
+use super::signals::log::{Clock, Column, Log, Meaning};
 use crate::recording::Channel;
 use std::collections::BTreeSet;
 

@@ -1,10 +1,10 @@
 //! From signals with their own times to rows that have them all, cut into recordings; what was not recorded stays missing.
 //! No drop-out is filled but from channels that measure the same: a row without a value keeps the field blank, and a long gap ends the recording.
 
-use super::columns::log::Meaning;
-use super::columns::motion::Track;
-use super::columns::signal::{GAP_IN_STEPS, Signal, nearest};
 use super::columns::take::Signals;
+use super::signals::log::Meaning;
+use super::signals::motion::Track;
+use super::signals::signal::{GAP_IN_STEPS, Signal, nearest};
 use crate::numerals::sig;
 use crate::recording::{CHANNELS, Channel};
 use std::ops::Range;

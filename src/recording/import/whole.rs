@@ -1,10 +1,7 @@
 //! The import of files as a whole: read, choose, decide units, make rows, cut into recordings.
 //! It writes nothing: the files of a study are made from its result in `study`.
 
-use super::columns::choose::{Choices, Chosen, Unused, choose};
-use super::columns::fills::take_out;
-use super::columns::held::release;
-use super::columns::log::{Clock, Log, Meaning};
+use super::columns::choose::{Choice, Choices, Chosen, Unused, choose};
 use super::columns::names::meaning;
 use super::columns::take::{Signals, Taken, needed, take};
 use super::error::{ImportError, flag};
@@ -12,6 +9,9 @@ use super::formats::clock::written;
 use super::formats::read::read;
 use super::overlap::{range, shifts};
 use super::rows::{Rows, rows};
+use super::signals::fills::take_out;
+use super::signals::held::release;
+use super::signals::log::{Clock, Log, Meaning};
 use crate::recording::wrap::repair;
 use crate::recording::{Channel, Driven};
 use std::collections::{BTreeMap, BTreeSet};
@@ -91,11 +91,16 @@ pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, 
     for (log, shift) in logs.iter_mut().zip(&shifts) {
         log.columns.iter_mut().for_each(|c| c.t.iter_mut().for_each(|t| *t += shift));
     }
-    let (chosen, unused) = choose(&logs, &settings.choices)?;
+    let Choice { chosen, unused, asked, decided } = choose(&logs, &settings.choices)?;
     let driven = &settings.choices.driven;
-    let taken = take(&chosen, &settings.choices).map_err(|error| with_inputs(error, &chosen, &logs, driven));
+    let taken = with_questions(take(&chosen, &settings.choices), asked);
+    let taken = taken.map_err(|error| with_inputs(error, &chosen, &logs, driven));
     let mut signals = taken.map_err(|error| with_texts(error, &logs))?;
     signals.unused.extend(unused);
+    for (meaning, words) in decided {
+        let of = |taken: &&mut Taken| taken.quantity == meaning.name();
+        signals.taken.iter_mut().filter(of).for_each(|taken| taken.evidence += &format!("; {words}"));
+    }
     missing(&chosen, &signals, &logs, driven).map_err(|error| with_texts(error, &logs))?;
     mend_heading(&mut signals);
     let (table, filled) = rows(&signals);
@@ -199,6 +204,25 @@ fn with_texts(error: ImportError, logs: &[Log]) -> ImportError {
         ImportError::Undecided(asked) => ImportError::Undecided(unused.chain(asked).collect()),
         ImportError::Choice(words) => ImportError::Choice(unused.chain([words]).collect::<Vec<_>>().join("; ")),
         error => error,
+    }
+}
+
+/// The signals, or what is asked of units that are not known with what is asked besides.
+fn with_questions(taken: Result<Signals, ImportError>, mut asked: Vec<String>) -> Result<Signals, ImportError> {
+    if asked.is_empty() {
+        return taken;
+    }
+    match taken {
+        Ok(_) => Err(ImportError::Undecided(asked)),
+        Err(ImportError::Undecided(more)) => {
+            let flag = |question: &str| {
+                question.split_once("`--unit ").and_then(|(_, s)| Some(s.split_once('=')?.0.to_owned()))
+            };
+            let of_units: Vec<Option<String>> = asked.iter().map(|question| flag(question)).collect();
+            asked.extend(more.into_iter().filter(|question| !of_units.contains(&flag(question))));
+            Err(ImportError::Undecided(asked))
+        }
+        Err(error) => Err(error),
     }
 }
 

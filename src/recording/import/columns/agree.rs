@@ -1,9 +1,9 @@
 //! How well a column agrees with what is known of the motion: a speed with the track, a direction with the course, a rate with the heading.
 //! It ranks the candidates for one quantity; units and signs are decided later, in `evidence`.
 
-use super::log::{Column, Meaning};
-use super::motion::{Track, ratio, rudder_effect};
-use super::signal::{Signal, size_below};
+use crate::recording::import::signals::log::{Column, Meaning};
+use crate::recording::import::signals::motion::{Track, ratio, rudder_effect};
+use crate::recording::import::signals::signal::{Signal, size_below};
 use crate::recording::{Channel, Quantity};
 use std::f64::consts::FRAC_PI_2;
 

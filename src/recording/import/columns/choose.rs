@@ -3,13 +3,15 @@
 
 use super::actuators::by_names;
 use super::agree::{Sight, heading};
-use super::log::{Column, Log, Meaning};
-use super::motion::Track;
-use super::names::{VAGUELY, is_second_choice, is_shaft, is_unit, reading, source};
-use super::place::places;
-use super::signal::Signal;
+use super::names::{Reading, VAGUELY, by_revolutions, is_second_choice, is_unit, reading, source};
+use super::orders::follows;
+use super::take::needed;
 use crate::files::suggestion;
 use crate::recording::import::error::ImportError;
+use crate::recording::import::signals::log::{Column, Log, Meaning};
+use crate::recording::import::signals::motion::Track;
+use crate::recording::import::signals::place::places;
+use crate::recording::import::signals::signal::Signal;
 use crate::recording::{CHANNELS, Channel, Driven, Quantity};
 use std::collections::{BTreeMap, HashMap};
 
@@ -50,7 +52,7 @@ impl Choices {
     /// [`ImportError::Choice`].
     pub fn check(&self) -> Result<(), ImportError> {
         let known = || {
-            let beside = super::log::BESIDE_CHANNELS.iter().map(|(name, ..)| *name);
+            let beside = crate::recording::import::signals::log::BESIDE_CHANNELS.iter().map(|(name, ..)| *name);
             CHANNELS.iter().map(|c| c.name).chain(beside)
         };
         let all = self.columns.keys().map(|k| ("--column", k)).chain(self.units.keys().map(|k| ("--unit", k)));
@@ -89,6 +91,19 @@ pub struct Unused {
 /// The columns of one quantity: one name, in one file or several.
 pub type Chosen<'a> = BTreeMap<Meaning, Vec<&'a Column>>;
 
+/// What was chosen of the columns.
+#[derive(Default)]
+pub struct Choice<'a> {
+    /// The columns that are taken, by what they are.
+    pub chosen: Chosen<'a>,
+    /// Those that are not.
+    pub unused: Vec<Unused>,
+    /// Questions about units that are not known.
+    pub asked: Vec<String>,
+    /// What else decided than names: by what a column is taken for, a sentence for its evidence.
+    pub decided: Vec<(Meaning, String)>,
+}
+
 /// A column of one name, in one file or several, that may be taken for a quantity.
 struct Candidate<'a> {
     name: &'a str,
@@ -119,13 +134,14 @@ fn heading_of_courses(candidates: &mut BTreeMap<Meaning, Vec<Candidate>>) {
     }
 }
 
-/// The columns that are taken, by what they are, and those that are not. Candidates are ranked by what the user says, whether they
-/// contain values that change, whether the data contradict them, whether their partner is of the same sensor, how much of their name the
-/// quantity explains, whether the file states a unit that fits, and by how well they agree with the data.
+/// The columns that are taken and those that are not. Candidates are ranked by what the user says, whether they
+/// contain values that change, whether the data contradict them, whether their partner is of the same sensor, whether more than one letter
+/// or a unit says what they are, how much of their name the quantity explains, whether the file states a unit that fits, how well they
+/// agree with the data, and how many samples they have.
 ///
 /// # Errors
 /// [`ImportError::Choice`] for a column that no file has.
-pub fn choose<'a>(logs: &'a [Log], choices: &Choices) -> Result<(Chosen<'a>, Vec<Unused>), ImportError> {
+pub fn choose<'a>(logs: &'a [Log], choices: &Choices) -> Result<Choice<'a>, ImportError> {
     let names = named(logs);
     let forced = forced(&names, choices)?;
     let free: Vec<(&str, Option<&str>)> = names
@@ -163,11 +179,24 @@ pub fn choose<'a>(logs: &'a [Log], choices: &Choices) -> Result<(Chosen<'a>, Vec
     heading_of_courses(&mut candidates);
     let mut order: Vec<Meaning> = candidates.keys().copied().collect();
     order.sort_by_key(|meaning| (turn(*meaning), *meaning));
-    let (mut chosen, mut sight) = (Chosen::new(), Sight::default());
+    let (mut chosen, mut sight, mut decided) = (Chosen::new(), Sight::default(), Vec::new());
     for meaning in order {
-        let Some(list) = candidates.remove(&meaning) else { continue };
+        let Some(mut list) = candidates.remove(&meaning) else { continue };
         let partner = leader(meaning).and_then(|leader| chosen.get(&leader)).and_then(|c| c.first());
-        let best = best(&list, meaning, partner.map(|c| c.name.as_str()), &sight);
+        let mut best = best(&list, meaning, partner.map(|c| c.name.as_str()), &sight);
+        if let Some(order) = ordered(meaning)
+            && let Some(found) = order_among(&mut list, &mut best)
+        {
+            let (of, by) = (list[best].name, found.name.to_owned());
+            decided.push((meaning, format!("`{by}` leads it and leaps faster: that is the order")));
+            if chosen.contains_key(&order) || candidates.contains_key(&order) {
+                let why = format!("it leads `{of}` and leaps faster: an order, of which another column is taken");
+                unused.push(Unused { column: by, why });
+            } else {
+                decided.push((order, format!("leads `{of}` and leaps faster: the order")));
+                chosen.insert(order, found.columns);
+            }
+        }
         let taken = list.get(best).map_or("", |c| c.name);
         for (i, candidate) in list.into_iter().enumerate() {
             if i == best {
@@ -191,7 +220,41 @@ pub fn choose<'a>(logs: &'a [Log], choices: &Choices) -> Result<(Chosen<'a>, Vec
         let why = "the direction from north is taken for that of the wind".to_owned();
         unused.extend(angle.first().map(|c| Unused { column: c.name.clone(), why }));
     }
-    Ok((chosen, unused))
+    let mut asked = Vec::new();
+    chosen.retain(|meaning, columns| {
+        let Some(question) = unknown_unit(*meaning, columns, choices) else { return true };
+        if needed(*meaning) {
+            asked.push(question);
+            return true;
+        }
+        unused.extend(columns.first().map(|c| Unused { column: c.name.clone(), why: question }));
+        false
+    });
+    Ok(Choice { chosen, unused, asked, decided })
+}
+
+/// What is ordered of an actuator by what is measured of it.
+fn ordered(meaning: Meaning) -> Option<Meaning> {
+    match meaning {
+        Meaning::Channel(Channel::Delta) => Some(Meaning::Channel(Channel::DeltaOrder)),
+        Meaning::Channel(Channel::N) => Some(Meaning::Channel(Channel::NOrder)),
+        _ => None,
+    }
+}
+
+/// Takes the order out of the candidates for what is measured of an actuator, by what the best of them and another do: the best is the
+/// order itself only where their names say as much as each other.
+fn order_among<'a>(list: &mut Vec<Candidate<'a>>, best: &mut usize) -> Option<Candidate<'a>> {
+    let others = || (0..list.len()).filter(|i| i != best && !list[*i].forced && moves(&list[*i].columns));
+    let named = |i: usize| NAMED.iter().filter(|bound| list[i].explained > **bound).count();
+    let follower = others()
+        .find(|i| !list[*best].forced && named(*i) == named(*best) && follows(&list[*i].columns, &list[*best].columns));
+    let order = match follower {
+        Some(follower) => std::mem::replace(best, follower),
+        None => others().find(|i| follows(&list[*best].columns, &list[*i].columns))?,
+    };
+    *best -= usize::from(order < *best);
+    Some(list.remove(order))
 }
 
 /// The columns of all files by their name, in the order in which they come.
@@ -239,9 +302,10 @@ fn read(name: &str, columns: &[&Column], forced: &BTreeMap<String, Meaning>) -> 
 
 /// What a name and its unit say.
 fn by_name(name: &str, unit: Option<&str>) -> Option<(Meaning, f64)> {
-    let shaft = || is_shaft(name) && unit.is_some_and(|u| Quantity::Rotation.factor(u).is_some());
-    let by_name = reading(name).filter(|r| unit.is_none_or(|unit| fits(r.meaning, unit)));
-    by_name.map(|r| (r.meaning, r.explained)).or_else(|| shaft().then_some((SHAFT, 0.5)))
+    // One letter says too little where the unit is none of what it may stand for: `V [V]`.
+    let sure = |r: &Reading, unit| is_stated(r.meaning, unit) || name.chars().count() > 1 && fits(r.meaning, unit);
+    let by_name = reading(name).filter(|r| unit.is_none_or(|unit| sure(r, unit)));
+    by_name.or_else(|| by_revolutions(name, unit?)).map(|r| (r.meaning, r.explained))
 }
 
 /// The order in which quantities are chosen: those with which others are compared come first.
@@ -296,38 +360,48 @@ fn best(list: &[Candidate<'_>], meaning: Meaning, partner: Option<&str>, sight: 
     }
     let samples = |c: &Candidate<'_>| c.columns.iter().map(|c| c.v.len()).sum::<usize>();
     let most = list.iter().map(samples).max().unwrap_or(0);
+    let stated =
+        |c: &Candidate<'_>| c.columns.first().is_some_and(|c| c.unit.as_deref().is_some_and(|u| is_stated(meaning, u)));
+    let any_stated = list.iter().any(stated);
     let rank = |i: &usize| {
         let c = &list[*i];
         let agreement = sight.agreement(meaning, &c.columns);
-        let stated = |c: &&Column| c.unit.as_deref().is_some_and(|u| meaning.quantity().factor(u).is_some());
         (
             c.forced,
             (5 * samples(c) > most, moves(&c.columns)),
             agreement.is_none_or(|a| a > CONTRADICTED),
-            partner.is_none_or(|partner| source(partner) == source(c.name)),
+            partner.map_or(1, |partner| shared(&source(partner), &source(c.name))),
+            stated(c) || !any_stated || c.name.chars().count() > 1,
             NAMED.iter().filter(|bound| c.explained > **bound).count(),
             !is_second_choice(c.name),
-            c.columns.first().is_some_and(stated),
-            // In tenths: a closer agreement is chance.
-            agreement.map_or(5, |a| (10.0 * a) as usize),
+            stated(c),
+            // In tenths: a closer agreement is chance, and a few samples more are no better.
+            (agreement.map_or(5, |a| (10.0 * a) as usize), 10 * samples(c) / most.max(1)),
         )
     };
     (0..list.len()).rev().max_by_key(rank).unwrap_or(0)
 }
 
+/// How far two columns are of one sensor: 2 where both name the same, 0 where they name two, 1 where one of them names none.
+fn shared(one: &str, other: &str) -> u8 {
+    match (one, other) {
+        ("", _) | (_, "") => 1,
+        _ => 2 * u8::from(one == other),
+    }
+}
+
 /// Takes the quantities with which others are compared from what was just chosen.
 fn look(sight: &mut Sight, meaning: Meaning, chosen: &Chosen<'_>, choices: &Choices) {
     let of = |meaning: Meaning| chosen.get(&meaning).map(Vec::as_slice);
-    let radians = |meaning: Meaning, columns: &[&Column]| {
+    let unit = |meaning: Meaning, columns: &[&Column]| {
         let unit = choices.units.get(meaning.name()).or(columns.first().and_then(|c| c.unit.as_ref()));
-        unit.is_some_and(|u| Quantity::Angle.factor(u) == Some(1.0))
+        unit.and_then(|u| Quantity::Angle.factor(u))
     };
     match meaning {
         Meaning::Longitude => {
             let both = of(Meaning::Latitude).zip(of(Meaning::Longitude));
             let places = both.and_then(|(lat, lon)| {
-                let radians = radians(Meaning::Latitude, lat) && radians(Meaning::Longitude, lon);
-                places(lat, lon, radians).ok().flatten()
+                places(lat, lon, [unit(Meaning::Latitude, lat), unit(Meaning::Longitude, lon)]).ok().flatten()
             });
             sight.track = places.and_then(|p| Track::of(&p.x, &p.y));
         }
@@ -341,8 +415,32 @@ fn look(sight: &mut Sight, meaning: Meaning, chosen: &Chosen<'_>, choices: &Choi
     }
 }
 
-/// Whether a quantity may be measured in a unit: a rudder in deg/s is no rudder angle. A spelling that is no unit says nothing, nor does
-/// `ms`, which is written for m/s too.
+/// Whether a unit is one of a quantity.
+fn is_stated(meaning: Meaning, unit: &str) -> bool {
+    meaning.quantity().factor(unit).is_some()
+}
+
+/// Whether a speed is in `ms`, which is written for m/s and for milliseconds, so that it says nothing.
+fn says_nothing(meaning: Meaning, unit: &str) -> bool {
+    unit == "ms" && meaning.quantity() == Quantity::Speed
+}
+
+/// Whether a quantity may be measured in a unit: a rudder in deg/s is no rudder angle. A unit that is not known is asked for.
 fn fits(meaning: Meaning, unit: &str) -> bool {
-    meaning.quantity().factor(unit).is_some() || !is_unit(unit) || Quantity::Time.factor(unit).is_some()
+    is_stated(meaning, unit) || !is_unit(unit) || says_nothing(meaning, unit)
+}
+
+/// The question for a unit that is not known, where no other column shows it: speeds and rates are compared with the track and the heading.
+fn unknown_unit(meaning: Meaning, columns: &[&Column], choices: &Choices) -> Option<String> {
+    let unit = columns.iter().find_map(|c| c.unit.as_deref().filter(|unit| !is_stated(meaning, unit)))?;
+    let compared = matches!(meaning.quantity(), Quantity::Speed | Quantity::AngularRate) && needed(meaning);
+    if compared || choices.units.contains_key(meaning.name()) {
+        return None;
+    }
+    let (name, choices) = (meaning.name(), meaning.quantity().choices().replace(", ", " or "));
+    let column = columns.first().map_or("", |c| c.name.as_str());
+    Some(format!(
+        "the unit `{unit}` of column `{column}` ({}) is not known: pass `--unit {name}={choices}`, or write the column in one of these",
+        meaning.words()
+    ))
 }

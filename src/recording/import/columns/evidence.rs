@@ -1,11 +1,12 @@
 //! Units, signs and senses by comparing columns with one another: heading against the track and the yaw rate, speed against the
 //! track, rudder against the turn. What the data do not show is asked for, with the flag to pass.
 
-use super::log::{Column, Meaning};
-use super::motion::{AGREE, MOST_RADIANS, Track, ratio, rudder_effect};
 use super::names::is_magnetic;
-use super::signal::{Signal, size_below};
+use super::scale::{advice, clock};
 use crate::numerals::sig;
+use crate::recording::import::signals::log::{Column, Meaning};
+use crate::recording::import::signals::motion::{AGREE, MOST_RADIANS, Track, ratio, rudder_effect};
+use crate::recording::import::signals::signal::{Signal, size_below};
 use crate::recording::{Channel, Quantity};
 use std::f64::consts::FRAC_PI_2;
 
@@ -245,11 +246,15 @@ pub fn speed(
         (None, Some(given)) if !in_water && !(1.0 / FAR..FAR).contains(&times(given)) => {
             let (many, unit, flag) = (sig(times(given), 3), &given.unit, meaning.name());
             Err(format!(
-                "the track is sailed {many} times as fast as column `{name}` says in {unit}: is the time in another unit (`--unit t=ms`, `--unit t=min`), or are the positions? With `--unit {flag}={unit}` it is taken as it is"
+                "the track is sailed {many} times as fast as column `{name}` says in {unit}: {}. With `--unit {flag}={unit}` it is taken as it is",
+                advice(times(given))
             ))
         }
         (None, Some(given)) => Ok(as_given(given, "")),
-        (None, None) => Err(ask(meaning, name, "kn or m/s")),
+        (None, None) => {
+            let of_clock = ratio.filter(|_| !in_water).and_then(|ratio| clock(name, ratio.gain));
+            Err(of_clock.unwrap_or_else(|| ask(meaning, name, "kn or m/s")))
+        }
     }
 }
 

@@ -1,12 +1,13 @@
 //! Names of columns as ships and loggers write them: what is measured, and the unit where the name has one.
 //! Whether a column is what its name says is checked against its values elsewhere.
 
-use super::log::Meaning;
 use super::vocabulary::{
-    BESIDE_SHIPS, CHANGES, CLOCKS, FROM_BOW, FROM_NORTH, MAGNETIC, MOVES, NEUTRAL, ORDERS, PHRASES, RELATIVE, SHIPS,
-    SINCE, SPEEDS, VAGUE, WIND, WIND_DIRECTIONS, WIND_SPEEDS, is_on, phrases,
+    BESIDE_COUNTS, BESIDE_SHIPS, CALENDAR, CHANGES, CLOCKS, COUNTS, DRIVES, FROM_BOW, FROM_NORTH, MAGNETIC, MOVES,
+    NEUTRAL, ORDERS, PHRASES, RELATIVE, SHIPS, SINCE, SPEEDS, VAGUE, WIND, WIND_DIRECTIONS, WIND_SPEEDS, is_on,
+    phrases,
 };
-use crate::recording::{Channel, UNITS};
+use crate::recording::import::signals::log::Meaning;
+use crate::recording::{Channel, Quantity, UNITS};
 use std::ops::Range;
 
 /// A letter without its accent.
@@ -76,7 +77,8 @@ const ENDINGS: [(&[&str], &str); 33] = [
 ];
 
 /// A header field as name and unit: `Rudder angle [deg]`, `SOG (kn)`, `hdg_deg`, `Shaft RPM`. A reference that stands with the unit
-/// goes to the name: `Heading [°M]` is `Heading magnetic`.
+/// goes to the name: `Heading [°M]` is `Heading magnetic`. What stands in the place of a unit and is no word of a name is one, known or
+/// not.
 pub fn name_and_unit(field: &str) -> (String, Option<String>) {
     let field = field.trim().trim_matches('"').trim();
     for (open, close) in [('[', ']'), ('(', ')'), ('{', '}'), ('<', '>')] {
@@ -84,14 +86,20 @@ pub fn name_and_unit(field: &str) -> (String, Option<String>) {
             && let Some((unit, _)) = rest.split_once(close)
         {
             let unit = unit.trim();
-            // `Heading (true)` has no unit in its brackets.
-            if unit.is_empty() || is_unit(unit) {
-                return (name.trim().to_owned(), Some(unit.to_owned()).filter(|u| !u.is_empty()));
+            // `Rudder [deg, + port]`.
+            let (unit, more) = unit.split_once([',', ';']).filter(|(first, _)| is_unit(first)).unwrap_or((unit, ""));
+            let name = format!("{} {}", name.trim(), more.trim()).trim().to_owned();
+            if unit.is_empty() || (is_unit(unit) && !is_side(unit, &name)) {
+                return (name, Some(unit.trim().to_owned()).filter(|u| !u.is_empty()));
             }
             if let Some((degrees, reference)) = referred(unit) {
-                return (format!("{} {reference}", name.trim()), Some(degrees.to_owned()));
+                return (format!("{name} {reference}"), Some(degrees.to_owned()));
             }
-            return (format!("{} {unit}", name.trim()), None);
+            // `Heading (true)` has no unit in its brackets.
+            if is_of_names(unit) {
+                return (format!("{name} {unit}"), None);
+            }
+            return (name, Some(unit.to_owned()));
         }
     }
     // `True wind angle °`, `Heading °M`.
@@ -115,6 +123,28 @@ fn referred(unit: &str) -> Option<(&str, &'static str)> {
         Some((degrees, if end.starts_with(['m', 'M']) { "magnetic" } else { "true" }))
     });
     parted.filter(|(degrees, _)| crate::recording::Quantity::Angle.factor(degrees).is_some())
+}
+
+/// Whether one letter beside a name is no unit of what it names but a side or a reference: `Latitude (N)`, `Rudder (S)`.
+fn is_side(letter: &str, name: &str) -> bool {
+    ["N", "S", "E", "W", "P", "T", "M"].contains(&letter)
+        && name.chars().count() > 1
+        && reading(name).is_some_and(|reading| reading.meaning.quantity().factor(letter).is_none())
+}
+
+/// Whether what stands in brackets belongs to the name before them: a word of names, a letter or a number.
+fn is_of_names(text: &str) -> bool {
+    let lists = [
+        NEUTRAL, ORDERS, RELATIVE, MAGNETIC, CHANGES, MOVES, CLOCKS, WIND, SPEEDS, FROM_NORTH, FROM_BOW, SHIPS, DRIVES,
+    ];
+    let phrased = |word: &str| {
+        let mut all = PHRASES.iter().chain(VAGUE).flat_map(|(_, list)| phrases(list)).flat_map(|p| p.split(' '));
+        all.any(|of| of == word)
+    };
+    let known = |word: &str| {
+        word.chars().count() < 2 || lists.iter().any(|list| is_on(list, word)) || is_wind_word(word) || phrased(word)
+    };
+    !text.contains(['/', '^', '%']) && words(text).iter().any(|word| known(unnumbered(word)))
 }
 
 /// Whether a text is the spelling of a unit.
@@ -287,14 +317,50 @@ pub fn time_rank(name: &str) -> u8 {
     if any(SINCE) {
         return 1;
     }
-    u8::from(parts.first().is_some_and(|p| p == "t") && parts.len() <= 2)
+    u8::from((parts.first().is_some_and(|p| p == "t") && parts.len() <= 2) || time_unit(name).is_some())
 }
 
-/// Whether a column that is counted in revolutions is that of the propeller or what drives it: `ME speed [rpm]`, `Propeller [1/min]`.
-pub fn is_shaft(name: &str) -> bool {
+/// The unit of a time by its name: `Hour of day` counts hours, `DOY` and `Day of year` days.
+pub fn time_unit(name: &str) -> Option<&'static str> {
     let parts = words(name);
-    let has = |all: &[&str]| parts.iter().any(|p| all.contains(&p.as_str()));
-    has(&["propeller", "prop", "shaft", "engine", "me"]) && !parts.iter().any(|p| is_on(CHANGES, p) || is_on(ORDERS, p))
+    if parts.join(" ").starts_with("day of") {
+        return Some("d");
+    }
+    let (unit, _) = COUNTS.iter().find(|(_, list)| parts.iter().any(|p| is_on(list, p)))?;
+    let beside = |p: &String| is_on(BESIDE_COUNTS, p) || COUNTS.iter().any(|(_, list)| is_on(list, p));
+    parts.iter().all(beside).then_some(unit)
+}
+
+/// The columns of year, month, day, hour, minute and second among these names, each the first that is left.
+pub fn calendar<'a>(names: impl Iterator<Item = &'a str>) -> Option<[usize; 6]> {
+    let names: Vec<Vec<String>> = names.map(words).collect();
+    let mut found = [usize::MAX; 6];
+    for (part, list) in CALENDAR.iter().enumerate() {
+        let is = |(i, name): &(usize, &Vec<String>)| {
+            !found[..part].contains(i) && matches!(name.as_slice(), [word] if is_on(list, word))
+        };
+        found[part] = names.iter().enumerate().find(is)?.0;
+    }
+    Some(found)
+}
+
+/// The propeller rate or its order by the unit: revolutions are counted of nothing else (`Port RPM`), but for what has a name of its own,
+/// and other things that happen a minute only of what drives the ship (`Propeller [1/min]`).
+pub fn by_revolutions(name: &str, unit: &str) -> Option<Reading> {
+    Quantity::Rotation.factor(unit)?;
+    let parts = without_unit(words(name));
+    let has = |list: &'static str| parts.iter().any(|p| is_on(list, unnumbered(p)));
+    // `ME speed [rpm]`: the speed is that of what drives the ship.
+    let (drives, named) = (has(DRIVES), reading(name).is_some());
+    let counted = !["1/", "min-", "min^", "s-", "s^", "Hz", "rad"].iter().any(|start| unit.starts_with(start));
+    if has(CHANGES) || !(drives || (counted && !named)) {
+        return None;
+    }
+    let of_unit = words(unit).iter().map(|word| word.chars().count()).sum::<usize>();
+    let known = |p: &String| is_on(DRIVES, unnumbered(p)) || is_on(NEUTRAL, unnumbered(p)) || is_on(ORDERS, p);
+    let unknown: usize = parts.iter().filter(|p| !known(p)).map(|p| unnumbered(p).chars().count()).sum();
+    let channel = if has(ORDERS) { Channel::NOrder } else { Channel::N };
+    Some(Reading { meaning: Meaning::Channel(channel), explained: of_unit as f64 / (of_unit + unknown) as f64 })
 }
 
 /// Whether a heading or a course counts from magnetic north, by its name.
@@ -332,6 +398,41 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_time_in_several_columns_and_a_count_of_hours_or_days_are_known_by_their_names() {
+        let columns = |names: &'static str| calendar(names.split(' '));
+        assert_eq!(columns("YYYY MM DD hh mm ss lat lon"), Some([0, 1, 2, 3, 4, 5]));
+        assert_eq!(columns("Year lat lon Month Day Hour Minute Second"), Some([0, 3, 4, 5, 6, 7]));
+        assert_eq!((columns("year lat month day"), columns("m d h s lat lon min")), (None, None));
+        let cases = [
+            ("DOY", Some("d")),
+            ("Day of year", Some("d")),
+            ("Hour of day", Some("h")),
+            ("Engine hours", None),
+            ("Time", None),
+        ];
+        cases.iter().for_each(|(name, unit)| assert_eq!(time_unit(name), *unit, "{name}"));
+    }
+
+    #[test]
+    fn what_stands_in_the_place_of_a_unit_is_a_unit_or_a_word_of_the_name() {
+        for (field, name, unit) in [
+            ("Depth (fm)", "Depth", Some("fm")),
+            ("Rudder [increments]", "Rudder", Some("increments")),
+            ("Drehzahl [U/min]", "Drehzahl", Some("U/min")),
+            ("lat [min]", "lat", Some("min")),
+            ("Rudder [deg, + port]", "Rudder + port", Some("deg")),
+            ("Heading (true)", "Heading true", None),
+            ("Heading (Gyro 1)", "Heading Gyro 1", None),
+            ("Latitude (N)", "Latitude N", None),
+            ("Rudder (S)", "Rudder S", None),
+            ("Rudder (order)", "Rudder order", None),
+            ("Heading (2)", "Heading 2", None),
+        ] {
+            assert_eq!(name_and_unit(field), (name.to_owned(), unit.map(str::to_owned)), "{field}");
+        }
+    }
+
+    #[test]
     fn names_of_ships_and_loggers_are_understood() {
         let cases = [
             ("Rudder angle [deg]", "delta", Some("deg")),
@@ -357,9 +458,22 @@ mod tests {
             assert_eq!(meaning(&name).map(Meaning::name), Some(expected), "{field}");
             assert_eq!(found.as_deref(), unit, "{field}");
         }
-        // A shaft is a shaft rate by its unit alone.
-        let (shaft, unit) = name_and_unit("Shaft RPM");
-        assert!(is_shaft(&shaft) && meaning(&shaft).is_none() && unit.as_deref() == Some("rpm"), "{shaft} {unit:?}");
+        // What is counted in revolutions is a propeller rate by its unit alone.
+        for (field, expected) in [
+            ("Shaft RPM", Some(Channel::N)),
+            ("Port RPM", Some(Channel::N)),
+            ("/motor/rpm", Some(Channel::N)),
+            ("ME speed [U/min]", Some(Channel::N)),
+            ("Propeller [min^-1]", Some(Channel::N)),
+            ("Port order [rpm]", Some(Channel::NOrder)),
+            ("Pump RPM", None),
+            ("Bow thruster [rpm]", None),
+            ("Alarms [1/min]", None),
+        ] {
+            let (name, unit) = name_and_unit(field);
+            let found = by_revolutions(&name, unit.as_deref().unwrap_or("")).map(|r| r.meaning);
+            assert_eq!(found, expected.map(Meaning::Channel), "{field}: {name} {unit:?}");
+        }
         for field in [
             "Depth below keel",
             "Heading setpoint",

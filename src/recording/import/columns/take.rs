@@ -4,14 +4,14 @@
 use super::agree::{heading, heading_unit};
 use super::choose::{Choices, Chosen, Unused};
 use super::evidence::{Given, Known, Verdict, direction, other, rotation, rudder, speed, yaw_rate};
-use super::log::{Column, Meaning};
-use super::motion::{AGREE, Track};
-use super::place::places;
-use super::signal::{Signal, Tidied, median};
-use super::wind::doubts;
 use crate::numerals::sig;
 use crate::recording::Channel;
 use crate::recording::import::error::ImportError;
+use crate::recording::import::signals::log::{Column, Meaning};
+use crate::recording::import::signals::motion::{AGREE, Track};
+use crate::recording::import::signals::place::places;
+use crate::recording::import::signals::signal::{Signal, Tidied, median};
+use crate::recording::import::signals::wind::doubts;
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
 
@@ -128,6 +128,8 @@ pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportErr
             Channel::N | Channel::NOrder => rotation(*meaning, columns, given(*meaning)?.as_ref(), &known),
             Channel::Command(_) => other(*meaning, columns, given(*meaning)?.as_ref())
                 .map(|verdict| by_its_name(verdict, columns, channel)),
+            // Decided above, or left out.
+            Channel::R => continue,
             _ if signals.by.contains_key(meaning) || signals.is_asked(*meaning) => continue,
             // The unit of the surge velocity is that of both.
             Channel::V if signals.is_asked(Meaning::Channel(Channel::U)) => continue,
@@ -227,12 +229,12 @@ fn names_north(columns: &[&Column]) -> bool {
     columns.iter().any(|c| c.name.to_lowercase().contains("north"))
 }
 
-/// Channels without which nothing can be simulated, or which measure the motion: their unit must be known.
+/// Channels without which nothing can be simulated, or which measure the motion: their unit must be known. The yaw rate follows from the heading.
 pub fn needed(meaning: Meaning) -> bool {
-    use Channel::{Delta, N, Psi, R, U, V, X, Y};
+    use Channel::{Delta, N, Psi, U, V, X, Y};
     match meaning {
         Meaning::Channel(channel) => {
-            [X, Y, Psi, U, V, R, N, Delta].contains(&channel) || matches!(channel, Channel::Command(_))
+            [X, Y, Psi, U, V, N, Delta].contains(&channel) || matches!(channel, Channel::Command(_))
         }
         Meaning::WindAngle | Meaning::Variation => false,
         _ => true,
@@ -262,7 +264,13 @@ impl Signals {
                     self.asked.push(question);
                 }
             }
-            Err(question) => self.unused.push(Unused { column: name.to_owned(), why: question }),
+            Err(question) => {
+                if meaning == Meaning::Channel(Channel::R) {
+                    let text = "its unit is not known, and it is left out: the yaw rate is that of the heading";
+                    self.notes.push(format!("{name}: {text}; `--unit r=deg/min` or another takes it"));
+                }
+                self.unused.push(Unused { column: name.to_owned(), why: question });
+            }
         }
     }
 
@@ -300,8 +308,7 @@ impl Signals {
             return Ok(());
         };
         let units = [given(Meaning::Latitude, lat, choices)?, given(Meaning::Longitude, lon, choices)?];
-        let radians = units.iter().all(|unit| unit.as_ref().is_some_and(|u| u.factor == 1.0));
-        let Some(places) = places(lat, lon, radians)? else { return Ok(()) };
+        let Some(places) = places(lat, lon, units.map(|unit| unit.map(|u| u.factor)))? else { return Ok(()) };
         if places.nowhere > 0 {
             let text = "positions are 0 N 0 E, which receivers write without a fix; taken as missing";
             self.notes.push(format!("{} {text}", places.nowhere));

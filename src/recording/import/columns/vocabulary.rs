@@ -1,8 +1,8 @@
 //! The words that ships and loggers write for what they record, in the languages of those who build them.
 //! How a name is read with them is in `names`; whether a column is what its name says is checked against its values elsewhere.
 
-use super::log::Meaning::{self, *};
 use crate::recording::Channel::*;
+use crate::recording::import::signals::log::Meaning::{self, *};
 
 /// Phrases by what they name, parted by commas, in lower case and without accents. A phrase of one letter must begin the name.
 pub const PHRASES: &[(Meaning, &str)] = &[
@@ -28,7 +28,7 @@ pub const PHRASES: &[(Meaning, &str)] = &[
     (
         Channel(Delta),
         "rudder, rudder angle, rud, ruder, ruderlage, ruderwinkel, ror, rorvinkel, roerhoek, roer, \
-         rudderangle, rsa, helm, barre, angle de barre, angle barre, safran, angle de safran, gouvernail, \
+         rudderangle, rsa, barre, angle de barre, angle barre, safran, angle de safran, gouvernail, \
          timone, angolo timone, angolo di timone, angolo del timone, timon, angulo timon, angulo de timon, \
          angulo del timon, angulo de pala",
     ),
@@ -47,14 +47,14 @@ pub const PHRASES: &[(Meaning, &str)] = &[
     ),
     (
         GroundSpeed,
-        "sog, speed over ground, ground speed, groundspeed, gps speed, speed made good, fahrt uber grund, \
+        "sog, speed over ground, ground speed, groundspeed, gps speed, speed gps, gnss speed, speed gnss, speed made good, fahrt uber grund, \
          fahrt ueber grund, fug, fart over grunn, vitesse fond, vitesse sur le fond, velocita al suolo, \
          velocita sul fondo, velocidad sobre el fondo, velocidad sobre fondo",
     ),
     (
         Channel(Psi),
         "heading, hdg, hdt, hdm, gyro, psi, yaw, compass, head, steuerkurs, kurs rechtweisend, cap, cap vrai, \
-         cap magnetique, prua, prora, angolo di prua, rumbo, rumbo verdadero, rumbo magnetico",
+         cap magnetique, gyrocompass, gyro compass, kreiselkompass, girobussola, prua, prora, angolo di prua, rumbo, rumbo verdadero, rumbo magnetico",
     ),
     (
         Channel(N),
@@ -84,23 +84,23 @@ pub const VAGUE: &[(Meaning, &str)] = &[
     (Channel(Y), "east, y"),
     (Channel(U), "surge"),
     (Channel(V), "sway"),
-    (Channel(Delta), "delta, δ"),
+    (Channel(Delta), "delta, δ, helm, steering gear"),
     (Channel(Psi), "ψ"),
     (Channel(R), "r"),
     (Channel(N), "n"),
 ];
 
 /// Words that change nothing of what a column is: where it is from, how it was taken, which of several.
-pub const NEUTRAL: &str = "a, actual, ais, angle, average, avg, bow, data, deg, direction, estimate, estimated, fb, feedback, \
+pub const NEUTRAL: &str = "a, act, actual, ais, angle, average, avg, bow, data, deg, direction, estimate, estimated, fb, fbk, feedback, \
          filtered, gnss, gps, ground, ins, ist, istwert, main, mean, measured, measurement, meas, mru, nav, \
-         own, pos, position, prop, propeller, raw, sensor, shaft, ship, signal, smoothed, t, true, value, \
+         own, pos, position, prop, propeller, pv, raw, sensor, shaft, ship, signal, smoothed, t, true, value, \
          vessel, vrai, wgs84, helice, elica, welle, schiff, rechtweisend, verdadero, vero, vera, over, of, \
          the, in, port, starboard, stbd, sb, ps, number, no";
 
 /// Words that make a column something else of the thing that it names: how fast a rudder moves, whether its pump runs, when it was reported.
 pub const CHANGES: &str = "acceleration, accel, acc, accuracy, age, alarm, apparent, aw, bearing, beschleunigung, bias, count, \
          covariance, cross, destination, dest, deviation, diff, difference, drag, dt, error, err, fan, force, \
-         fuel, gust, gyroscope, heave, interval, kraft, last, lift, limit, load, max, maximum, min, minimum, \
+         fuel, aux, auxiliary, alternator, generator, genset, dg, winch, gust, gyroscope, heave, interval, kraft, last, lift, limit, load, max, maximum, min, minimum, \
          mode, moment, oil, pitch, power, pressure, pump, quality, rate, residual, roll, running, rms, sigma, \
          slip, state, status, std, stddev, stamp, tau, temperature, temp, tide, time, torque, thrust, \
          tension, tw, turbo, turbocharger, update, updated, valid, var, variance, voltage, waypoint, wave, \
@@ -110,8 +110,13 @@ pub const CHANGES: &str = "acceleration, accel, acc, accuracy, age, alarm, appar
 pub const MOVES: &str = "speed, velocity, vel, geschwindigkeit, vitesse, velocita, velocidad";
 
 /// Words that make a column an order rather than a measurement.
-pub const ORDERS: &str = "order, ordered, ord, command, commanded, cmd, set, setpoint, demand, demanded, desired, target, ref, \
-         reference, requested, soll, sollwert, consigne, comando, ordre, orden";
+pub const ORDERS: &str = "order, ordered, ord, command, commanded, cmd, set, setpoint, sp, demand, demanded, dmd, dem, desired, des, \
+         target, ref, reference, request, requested, req, selected, autopilot, ap, soll, sollwert, consigne, consigna, \
+         comando, impostato, impostata, ordre, orden, orde, gewenst, gewenste, bestilt";
+
+/// Words of what drives a ship.
+pub const DRIVES: &str =
+    "propeller, prop, shaft, engine, me, motor, moteur, motore, screw, helice, elica, schraube, welle, maschine";
 
 /// Names of a magnetic reference.
 pub const MAGNETIC: &str = "magnetic, mag, hdm, compass, magnetisch, magnetique, magnetico";
@@ -135,6 +140,19 @@ pub const FROM_BOW: &str = "angle, twa, awa, winkel, einfallswinkel, angolo, ang
 /// Words that are a time of their own.
 pub const CLOCKS: &str = "timestamp, datetime, time, tvec, utc, epoch, unix, zeit, uhrzeit, zeitstempel, tid, tijd, heure, \
          horodatage, temps, ora, orario, tempo, hora, tiempo, fecha";
+/// Names of the columns of a year, a month, a day, an hour, a minute and a second.
+pub const CALENDAR: [&str; 6] = [
+    "year, yyyy, yy, yr, jahr, annee, anno, ano",
+    "month, mon, mo, mm, monat, mois, mese, mes",
+    "day, dd, dy, d, tag, jour, giorno, dia",
+    "hour, hours, hh, hr, h, stunde, heure, ora, hora",
+    "minute, minutes, min, mi, mm, mn, m, minuto",
+    "second, seconds, sec, ss, se, s, sekunde, seconde, secondo, segundo",
+];
+/// Words of a count of days of the year or of hours of the day, by its unit.
+pub const COUNTS: [(&str, &str); 2] = [("d", "doy, yearday, julian, jday"), ("h", "hour, hours")];
+/// Words that may stand beside them.
+pub const BESIDE_COUNTS: &str = "day, of, the, year, decimal, utc, time, number, no";
 /// Words of a time since something.
 pub const SINCE: &str = "stamp, elapsed, seconds, secs, sec, millis, secondes, segundos, secondi";
 /// Words of a column that identifies the ship of each row.

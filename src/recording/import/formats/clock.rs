@@ -1,7 +1,7 @@
 //! Times as loggers write them, to seconds: ISO 8601, date and time apart, epochs, time of day, spreadsheet days.
 //! A time without a zone counts as UTC; no daylight saving is guessed.
 
-use crate::recording::import::columns::log::Clock;
+use crate::recording::import::signals::log::Clock;
 use jiff::civil::DateTime;
 use jiff::fmt::rfc2822;
 use jiff::tz::TimeZone;
@@ -137,6 +137,29 @@ fn reordered(text: &str, order: DateOrder) -> Option<String> {
     Some(if rest.is_empty() { date } else { format!("{date}T{}", rest.replace(' ', "")) })
 }
 
+/// Seconds that a clock is ahead of UTC by the name of its column: `Time (UTC+2)`, `Zeit GMT+02:00`.
+pub fn zone(name: &str) -> Option<f64> {
+    let upper = name.to_uppercase();
+    let at = ["UTC", "GMT"].iter().find_map(|mark| upper.find(mark))?;
+    let rest = upper[at + 3..].trim_start();
+    let sign = if rest.starts_with('+') { 1.0 } else { -1.0 };
+    let rest = rest.strip_prefix(['+', '-', '\u{2212}'])?.trim_start();
+    let end = rest.find(|c: char| !c.is_ascii_digit() && c != ':').unwrap_or(rest.len());
+    let (hours, minutes) = match (rest[..end].split_once(':'), end) {
+        (Some((h, m)), _) => (h.parse::<f64>().ok()?, m.parse::<f64>().ok()?),
+        (None, 4) => (rest[..2].parse().ok()?, rest[2..4].parse().ok()?),
+        (None, _) => (rest[..end].parse().ok()?, 0.0),
+    };
+    (hours <= 14.0 && minutes < 60.0).then_some(sign * (3600.0 * hours + 60.0 * minutes))
+}
+
+/// Whether a written time has its own zone: `10:00Z`, `10:00+02:00`.
+pub fn has_zone(text: &str) -> bool {
+    let text = text.trim().trim_matches('"').trim_end();
+    let of_day = text.find(':').map_or("", |at| &text[at..]);
+    of_day.contains(['+', '-']) || ["Z", "z", "UTC", "GMT"].iter().any(|end| text.ends_with(end))
+}
+
 /// Whether a date may have the day or the month first: `05/01/2024`, `5-1-2024`.
 pub fn two_orders(text: &str) -> bool {
     let digits = text.bytes().take_while(u8::is_ascii_digit).count();
@@ -160,12 +183,22 @@ pub fn date_order<'a>(texts: impl Iterator<Item = &'a str>) -> Option<DateOrder>
 /// Hours that a time since some start may have.
 const MOST_HOURS: u32 = 10_000;
 
-/// Seconds since midnight, or since some start, of a time such as `10:03:05.25`, `10:03 PM`, `03:05.25` or `1 days 02:03:05`.
+/// The forms of times that are read, for messages.
+pub const FORMS: &str = "2024-05-14 08:00:00, 14.05.2024 08:00:00, 05/14/2024 8:00:00 AM, 20240514T080000Z, a date in one column and 08:00:00, 08.00.00 or 080000 in another, \
+year, month, day, hour, minute and second in six columns, 08h00m00s, 135/08:00:00 (day of the year), and numbers of seconds or of any unit in the name (`Time [ms]`) or passed with `--unit t=`";
+
+/// Seconds since midnight, or since some start, of a time such as `10:03:05.25`, `10:03 PM`, `03:05.25`, `10.03.05`, `10h03m05s`,
+/// `135/10:03:05` or `1 days 02:03:05`.
 pub fn time_of_day(text: &str) -> Option<f64> {
     let text = text.trim().trim_matches('"').trim_end_matches(['Z', 'z']).replace(',', ".");
-    let (days, text) = text.split_once(" days ").or_else(|| text.split_once(" day ")).unwrap_or(("0", &text));
-    let days: u8 = days.trim().parse().ok()?;
+    let parted = [" days ", " day ", "/"].iter().find_map(|mark| text.split_once(mark));
+    let (days, text) = parted.filter(|(_, time)| time.contains(':')).unwrap_or(("0", &text));
+    let days: u16 = days.trim().parse().ok()?;
     let (text, half) = half_of_day(text.trim());
+    let lettered = text.contains('h').then(|| text.replace(['h', 'm'], ":").trim_end_matches(['s', ':']).to_owned());
+    let dotted = || text.len() >= 8 && text.split('.').take(3).filter(|p| p.len() == 2 && is_digits(p)).count() == 3;
+    let dotted = (!text.contains(':') && dotted()).then(|| text.replacen('.', ":", 2));
+    let text = lettered.or(dotted).unwrap_or_else(|| text.to_owned());
     let parts: Vec<&str> = text.split(':').collect();
     let (hours, minutes, seconds) = match parts.as_slice() {
         [h, m, s] => (h.parse::<u32>().ok()?, m.parse::<u8>().ok()?, s.parse::<f64>().ok()?),
@@ -177,6 +210,21 @@ pub fn time_of_day(text: &str) -> Option<f64> {
     let possible = hours < MOST_HOURS && minutes < 60 && (0.0..61.0).contains(&seconds);
     let total = f64::from(days) * DAY + 3600.0 * f64::from(hours) + 60.0 * f64::from(minutes) + seconds;
     possible.then(|| half.shift(total)).flatten()
+}
+
+fn is_digits(text: &str) -> bool {
+    !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit())
+}
+
+/// Seconds since 1970 of year, month, day, hour, minute and second.
+pub fn calendar(parts: [f64; 6]) -> Option<f64> {
+    let [year, month, day, hour, minute, second] = parts;
+    let whole = |v: f64, range: std::ops::RangeInclusive<f64>| (range.contains(&v) && v.fract() == 0.0).then_some(v);
+    let year = whole(year, 0.0..=9000.0).map(|y| if y < 100.0 { 2000.0 + y } else { y })? as i16;
+    let (month, day) = (whole(month, 1.0..=12.0)? as i8, whole(day, 1.0..=31.0)? as i8);
+    let of_day = whole(hour, 0.0..=23.0)? * 3600.0 + whole(minute, 0.0..=59.0)? * 60.0;
+    let date = jiff::civil::Date::new(year, month, day).ok()?;
+    (0.0..61.0).contains(&second).then_some(utc(date.at(0, 0, 0, 0))? + of_day + second)
 }
 
 /// Seconds since midnight of hours, minutes and seconds in one number: `101530.25`.
@@ -192,6 +240,34 @@ pub fn are_digits_of_day(values: &[f64]) -> bool {
     let (low, high) = finite().fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
     let step = values.windows(2).map(|v| v[1] - v[0]).filter(|s| *s > 0.0).fold(f64::MAX, f64::min);
     high - low > 100.0 && step <= 30.0 && finite().all(|v| v % 100.0 < 60.0 && digits_of_day(v).is_some())
+}
+
+/// Steps within which a time that starts again at the full hour follows the one before: stamps of minutes and seconds that began anew with a run
+/// do so anywhere else.
+const AT_THE_HOUR: f64 = 10.0;
+
+/// Whether a time has minutes and seconds alone, as a spreadsheet writes those that have a fraction: `59:59.0`.
+pub fn is_of_hour(text: &str) -> bool {
+    text.matches(':').count() == 1 && text.contains(['.', ',']) && time_of_day(text).is_some()
+}
+
+/// Times of minutes and seconds that go on past the full hour; gives how often.
+pub fn past_the_hour(times: &mut [f64]) -> usize {
+    let mut steps: Vec<f64> = times.windows(2).map(|t| t[1] - t[0]).filter(|s| *s > 0.0).collect();
+    if steps.is_empty() {
+        return 0;
+    }
+    let middle = steps.len() / 2;
+    let longest = AT_THE_HOUR * *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let (mut hours, mut last) = (0, f64::NAN);
+    for t in times.iter_mut().filter(|t| t.is_finite()) {
+        if *t < last && *t + 3600.0 - last <= longest {
+            hours += 1;
+        }
+        last = *t;
+        *t += 3600.0 * hours as f64;
+    }
+    hours
 }
 
 /// Times of day that go on past midnight.
@@ -334,6 +410,22 @@ mod tests {
     }
 
     #[test]
+    fn the_name_of_a_column_may_have_the_zone() {
+        let cases = [
+            ("Time (UTC+2)", Some(7200.0)),
+            ("Zeit GMT-03:30", Some(-12_600.0)),
+            ("time UTC +0530", Some(19_800.0)),
+            ("Time (UTC)", None),
+            ("Time", None),
+        ];
+        for (name, seconds) in cases {
+            assert_eq!(zone(name), seconds, "{name}");
+        }
+        let own = ["2024-05-01T10:00:03Z", "2024-05-01 10:00:03+02:00", "2024-05-01 10:00 UTC"];
+        assert!(own.into_iter().all(has_zone) && !has_zone("2024-05-01 10:00:03"));
+    }
+
+    #[test]
     fn epochs_are_known_by_their_size_and_spreadsheet_days_by_their_step() {
         assert_eq!(numeric_time(&[1_714_557_603.0], None).factor, 1.0);
         assert_eq!(numeric_time(&[1_714_557_603_000.0], None).factor, 1e-3);
@@ -355,11 +447,19 @@ mod tests {
             ("03:05.25", 185.25),
             ("1 days 00:00:01", 86_401.0),
             ("25:00:01", 90_001.0),
+            ("10.03.05", 36_185.0),
+            ("10h03m05s", 36_185.0),
+            ("10h03", 36_180.0),
+            ("135/10:03:05", 135.0 * DAY + 36_185.0),
         ];
         for (text, seconds) in cases {
             assert_eq!(time_of_day(text), Some(seconds), "{text}");
         }
-        assert_eq!(time_of_day("13:00:00 PM"), None);
+        for text in ["13:00:00 PM", "10.03", "110.03.05", "5/7", "heading"] {
+            assert_eq!(time_of_day(text), None, "{text}");
+        }
+        assert_eq!(calendar([2024.0, 5.0, 1.0, 10.0, 0.0, 3.25]), Some(1_714_557_603.25));
+        assert_eq!(calendar([2024.0, 13.0, 1.0, 10.0, 0.0, 3.25]), None);
         let clock: Vec<f64> = (0..200).map(|i| f64::from(101_500 + i / 60 * 100 + i % 60)).collect();
         assert!(are_digits_of_day(&clock) && digits_of_day(101_530.25) == Some(36_930.25));
         let seconds: Vec<f64> = (0..200).map(f64::from).collect();
@@ -372,6 +472,15 @@ mod tests {
         assert_eq!(spread(&mut times), Some(4));
         assert_eq!(times, [10.5, 10.75, 11.0, 11.25, 11.5, 11.75, 12.0, 12.25, 12.5, 12.75]);
         assert_eq!(spread(&mut [1.0, 2.0, 3.0, 4.0, 5.0]), None);
+    }
+
+    #[test]
+    fn minutes_and_seconds_go_on_past_the_hour_and_not_where_a_run_begins_anew() {
+        let mut times: Vec<f64> = (0..60).map(|i| f64::from(3570 + i) % 3600.0).collect();
+        assert_eq!((past_the_hour(&mut times), times[59]), (1, 3629.0));
+        let mut runs: Vec<f64> = (0..60).map(|i| f64::from(i % 30)).collect();
+        assert_eq!((past_the_hour(&mut runs), runs[59]), (0, 29.0));
+        assert!(is_of_hour("59:59.0") && !is_of_hour("10:59") && !is_of_hour("10:59:59.0"));
     }
 
     #[test]

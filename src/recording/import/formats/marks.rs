@@ -3,8 +3,8 @@
 
 use super::layout::number;
 use crate::recording::Channel;
-use crate::recording::import::columns::log::Meaning;
 use crate::recording::import::columns::names::is_unit;
+use crate::recording::import::signals::log::Meaning;
 use std::collections::BTreeSet;
 
 /// Letters that say which way a number counts: those of positive numbers and those of negative ones.

@@ -3,6 +3,8 @@
 
 pub(super) mod clock;
 mod foreign;
+mod header;
+mod jumps;
 mod layout;
 mod marks;
 mod nmea;

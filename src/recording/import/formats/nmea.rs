@@ -5,9 +5,9 @@ use super::clock::{DAY, DateOrder, date_time, digits_of_day, past_midnight};
 use super::layout::decoded;
 use super::passes::{FEW, passes, stepped_back};
 use crate::recording::Channel;
-use crate::recording::import::columns::log::{Clock, Column, Log, Meaning};
-use crate::recording::import::columns::signal::median;
 use crate::recording::import::error::ImportError;
+use crate::recording::import::signals::log::{Clock, Column, Log, Meaning};
+use crate::recording::import::signals::signal::median;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
@@ -84,7 +84,7 @@ impl Sentence<'_> {
 
     /// Degrees and minutes with the letter of the hemisphere.
     fn place(&self, i: usize, negative: &str) -> Option<f64> {
-        crate::recording::import::columns::geodesy::from_minutes(self.signed(i, negative)?)
+        crate::recording::import::signals::geodesy::from_minutes(self.signed(i, negative)?)
     }
 
     /// Whether the status at a field is not `V`, which says that the data are not valid.

@@ -8,8 +8,8 @@ use super::parquet::read_parquet;
 use super::text::read_text;
 use crate::files::written::bytes_of;
 use crate::recording::import::columns::choose::Choices;
-use crate::recording::import::columns::log::Log;
 use crate::recording::import::error::ImportError;
+use crate::recording::import::signals::log::Log;
 use std::path::Path;
 
 /// Reads a file, its time as the user says. A file whose own clock starts again several times is as many logs.

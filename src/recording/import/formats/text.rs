@@ -2,17 +2,19 @@
 //! What a column means and its unit are not decided here, but for what its header says.
 
 use super::clock::{
-    DateOrder, NumericTime, are_digits_of_day, date_order, date_time, digits_of_day, is_date_alone, numeric_time,
-    past_midnight, spread, time_of_day, two_orders,
+    DateOrder, FORMS, NumericTime, are_digits_of_day, calendar, date_order, date_time, digits_of_day, has_zone,
+    is_date_alone, is_of_hour, numeric_time, past_midnight, past_the_hour, spread, time_of_day, two_orders, zone,
 };
+use super::header::{Header, header};
+use super::jumps::{mend, words};
 use super::layout::{Delimiter, Layout, comment, decimal_comma, decoded, layout, number, too_wide};
 use super::marks::{Marks, signs};
 use super::passes::{FEW, OTHERWISE, passes, stepped_back};
 use crate::recording::Quantity;
 use crate::recording::import::columns::choose::Choices;
-use crate::recording::import::columns::log::{Clock, Column, Log, of_text};
-use crate::recording::import::columns::names::{is_ships_name, is_unit, meaning, name_and_unit, time_rank};
+use crate::recording::import::columns::names::{self, is_ships_name, meaning, time_rank, time_unit};
 use crate::recording::import::error::ImportError;
+use crate::recording::import::signals::log::{Clock, Column, Log, of_text};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::path::Path;
@@ -23,6 +25,8 @@ const NUMBERS: f64 = 0.9;
 const FEW_WORDS: usize = 2;
 /// Rows that a run has at least, where a file contains several.
 const FEWEST: usize = 10;
+/// Times closer than this are one \[s\].
+const SAME_TIME: f64 = 1e-6;
 
 /// The lines of a file as fields.
 struct Table<'a> {
@@ -51,14 +55,21 @@ pub fn read_text(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<Log
     let layout = layout(&text).ok_or_else(|| {
         fail("no columns are found: lines have no number of fields in common. Give a CSV (commas, semicolons, tabs, upright strokes or blanks), NMEA 0183 or Parquet file")
     })?;
-    let mut table = table(path, &text, &layout)?;
+    let numbered = |name: &String| name.parse::<usize>().is_ok();
+    let mut table = table(path, &text, &layout, !choices.columns.values().any(numbered))?;
     one_ship(&table)?;
     if table.rows.len() < 2 {
         let count = ["no line", "one line"][table.rows.len()];
         return Err(fail(&format!("there is {count} of data; give a file with at least two")));
     }
-    let Times { clock, t, used, how } = times(&table, choices)?;
+    let Times { clock, mut t, used, how } = times(&table, choices)?;
     let columns = columns(&mut table, &used, &t);
+    // A clock of its own is set by nobody.
+    let changes = if clock == Clock::Own { Vec::new() } else { mend(&mut t, &columns, choices) };
+    if !changes.is_empty() {
+        let note = words(&changes, |row| table.rows[row].0);
+        table.notes.push(note);
+    }
     let decimal =
         if table.decimal_comma && layout.delimiter != Delimiter::Character(',') { " and decimal commas" } else { "" };
     let format = format!("text with {}{decimal}; time is {how}", layout.delimiter.words());
@@ -71,7 +82,14 @@ pub fn read_text(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<Log
         texts: texts.clone(),
         notes,
     };
-    let runs = runs(&table, &columns, clock, &t);
+    let (runs, short) = runs(&table, &columns, clock, &t);
+    if let Some(first) = short.first() {
+        table.notes.push(format!(
+            "{} lines where its time starts again are too few for a run and are left out, the first is line {}",
+            short.iter().map(Range::len).sum::<usize>(),
+            table.rows[first.start].0
+        ));
+    }
     if let [_, second, ..] = runs.as_slice() {
         let line = table.rows[second.start].0;
         table.notes.push(match clock {
@@ -79,11 +97,17 @@ pub fn read_text(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<Log
             _ => format!("its time starts again {} times: {} runs", runs.len() - 1, runs.len()),
         });
     }
+    let runs: Vec<Vec<usize>> = runs.into_iter().map(|run| run.filter(|row| t[*row].is_finite()).collect()).collect();
+    let late = runs.iter().flat_map(|run| run.windows(2)).filter(|rows| t[rows[1]] < t[rows[0]] - SAME_TIME).count();
+    if late > 0 {
+        table.notes.push(format!("{late} lines come before an earlier one and are sorted"));
+    }
     let mut logs = Vec::new();
-    for run in runs {
+    for mut run in runs {
+        run.sort_by(|a, b| t[*a].total_cmp(&t[*b]));
         let part = |(column, values): &(Column, Vec<f64>)| {
             let mut column = column.clone();
-            run.clone().for_each(|row| column.push(t[row], values[row]));
+            run.iter().for_each(|row| column.push(t[*row], values[*row]));
             column
         };
         logs.push(log(
@@ -94,9 +118,14 @@ pub fn read_text(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<Log
     Ok(logs)
 }
 
-/// The rows of each run, where the clock steps back over what it covered before, or a clock of its own starts again; all rows as one where
-/// they are merely out of order.
-fn runs(table: &Table<'_>, columns: &[(Column, Vec<f64>)], clock: Clock, t: &[f64]) -> Vec<Range<usize>> {
+/// The rows of each run, where the clock steps back over what it covered before, or a clock of its own starts again, and those of pieces that
+/// are too short for a run; all rows as one where they are merely out of order.
+fn runs(
+    table: &Table<'_>,
+    columns: &[(Column, Vec<f64>)],
+    clock: Clock,
+    t: &[f64],
+) -> (Vec<Range<usize>>, Vec<Range<usize>>) {
     let repeats = |before: Range<usize>, after: Range<usize>| {
         let copy = before.len() == after.len()
             && before.clone().zip(after.clone()).all(|(a, b)| table.rows[a].1 == table.rows[b].1);
@@ -110,9 +139,9 @@ fn runs(table: &Table<'_>, columns: &[(Column, Vec<f64>)], clock: Clock, t: &[f6
         starts.extend(restarts(t));
     }
     let ends: Vec<usize> = starts.iter().copied().skip(1).chain([t.len()]).collect();
-    let runs: Vec<Range<usize>> = starts.into_iter().zip(ends).map(|(start, end)| start..end).collect();
-    let long = clock == Clock::Utc || runs.iter().all(|run| run.len() >= FEWEST);
-    if long { runs } else { std::iter::once(0..t.len()).collect() }
+    let runs = starts.into_iter().zip(ends).map(|(start, end)| start..end);
+    let (long, short): (Vec<_>, Vec<_>) = runs.partition(|run| clock == Clock::Utc || run.len() >= FEWEST);
+    if long.is_empty() { (std::iter::once(0..t.len()).collect(), Vec::new()) } else { (long, short) }
 }
 
 /// First rows of runs that begin where time goes back to the first tenth of the run before.
@@ -161,40 +190,22 @@ fn one_ship(table: &Table<'_>) -> Result<(), ImportError> {
     Ok(())
 }
 
-/// The lines below the header, and what the header says.
-fn table<'a>(path: &'a Path, text: &'a str, layout: &Layout) -> Result<Table<'a>, ImportError> {
-    let mut lines = text.lines().enumerate().skip(layout.first - 1).map(|(i, line)| (i + 1, line)).peekable();
+/// The lines below the header, and what the header says; `by_name` where the user calls no column by its number.
+fn table<'a>(path: &'a Path, text: &'a str, layout: &Layout, by_name: bool) -> Result<Table<'a>, ImportError> {
     let is_value = |f: &&str| number(f, true).is_some_and(f64::is_finite) || is_time(f);
-    let names_columns = |fields: &[&str]| fields.iter().filter(|f| is_value(f)).count() * 2 < fields.len();
-    let mut header: Vec<&str> = lines.peek().map_or_else(Vec::new, |(_, line)| layout.fields(line));
-    let mut named = names_columns(&header);
-    if named {
-        lines.next();
-    } else if let Some(line) =
-        text.lines().take(layout.first - 1).filter(|l| !l.trim().is_empty()).last().and_then(comment)
-    {
-        // The names may be in the last comment before the data.
-        header = layout.fields(line);
-        named = header.len() == layout.width && names_columns(&header);
+    let Header { mut names, fields: header, first, misfit } = header(text, layout, is_value);
+    if let Some((line, count)) = misfit.filter(|_| by_name) {
+        let width = layout.width;
+        let message = format!(
+            "this line names columns, and has {count} fields where the lines of data have {width}: write the names in one line, each that contains a separator of fields in quotes, or take the line out and call the columns by their number (`--column psi=4`)"
+        );
+        return Err(ImportError::At { path: path.to_owned(), line, column: 1, message });
     }
-    let mut names: Vec<(String, Option<String>)> = if named {
-        header.iter().map(|f| name_and_unit(f)).collect()
-    } else {
-        (1..=layout.width).map(|i| (i.to_string(), None)).collect()
-    };
-    // A second line of the header may contain the units.
-    let second: Vec<&str> = lines.peek().map_or_else(Vec::new, |(_, line)| layout.fields(line));
-    let unit_of = |f: &str| f.trim_matches(['[', ']', '(', ')']).trim().to_owned();
-    if named && second.iter().any(|f| is_unit(&unit_of(f))) && !second.iter().any(is_value) {
-        lines.next();
-        for (name, unit) in names.iter_mut().zip(second) {
-            name.1 = Some(unit_of(unit)).filter(|u| is_unit(u)).or(name.1.take());
-        }
-    }
+    let lines = text.lines().enumerate().map(|(i, line)| (i + 1, line)).skip(first - 1);
     let (mut rows, mut damaged, mut repeated) = (Vec::new(), Vec::new(), 0);
     for (line, content) in lines.filter(|(_, l)| !l.trim().is_empty() && comment(l).is_none()) {
         let fields = layout.fields(content);
-        if named && fields == header {
+        if header.as_ref() == Some(&fields) {
             repeated += 1;
         } else if fields.len() == names.len() {
             rows.push((line, fields));
@@ -203,6 +214,10 @@ fn table<'a>(path: &'a Path, text: &'a str, layout: &Layout) -> Result<Table<'a>
         }
     }
     let mut notes = Vec::new();
+    if !text.ends_with('\n') && is_cut(&rows) {
+        let line = rows.pop().map_or(0, |(line, _)| line);
+        notes.push(format!("line {line}, the last, has no end, and its last number fewer figures than any other there: it may be cut, and is left out"));
+    }
     if let Some(first) = damaged.first() {
         let (count, width) = (damaged.len(), names.len());
         notes.push(format!("{count} lines do not have {width} fields and are left out, the first is line {first}"));
@@ -210,13 +225,33 @@ fn table<'a>(path: &'a Path, text: &'a str, layout: &Layout) -> Result<Table<'a>
     if repeated > 0 {
         notes.push(format!("the line of column names comes {repeated} times more and is left out"));
     }
-    if !named {
+    if header.is_none() {
         notes.push(
             "there is no line of column names: columns are called by their number from 1 (`--column psi=4`)".to_owned(),
         );
     }
+    number_equal(&mut names);
     let decimal_comma = commas(path, &rows, layout)?;
     Ok(Table { path, names, decimal_comma, rows, texts: Vec::new(), notes })
+}
+
+/// Numbers the columns of one name from the second on, as `Heading (2)`: they are columns of their own.
+fn number_equal(names: &mut [(String, Option<String>)]) {
+    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+    for (name, _) in names {
+        let count = counts.entry(name.clone()).or_default();
+        *count += 1;
+        if *count > 1 {
+            *name = format!("{name} ({count})").trim().to_owned();
+        }
+    }
+}
+
+/// Whether the last field of the last row is shorter than in every other row.
+fn is_cut(rows: &[(usize, Vec<&str>)]) -> bool {
+    let Some(((_, last), others)) = rows.split_last() else { return false };
+    let length = |fields: &[&str]| fields.last().map_or(0, |f| f.len());
+    !others.is_empty() && others.iter().all(|(_, fields)| length(fields) > length(last))
 }
 
 /// Whether a comma separates fractions.
@@ -251,8 +286,25 @@ struct Times {
     how: String,
 }
 
+/// Times whose year, month, day, hour, minute and second are in columns of their own.
+fn in_columns(table: &Table<'_>) -> Option<Times> {
+    let used = names::calendar(table.names.iter().map(|(name, _)| name.as_str()))?;
+    let time = |(_, fields): &(usize, Vec<&str>)| {
+        calendar(used.map(|f| number(fields[f], table.decimal_comma).unwrap_or(f64::NAN))).unwrap_or(f64::NAN)
+    };
+    let t: Vec<f64> = table.rows.iter().map(time).collect();
+    if 2 * t.iter().filter(|t| t.is_finite()).count() < t.len() {
+        return None;
+    }
+    let named = used.map(|f| format!("`{}`", table.names[f].0)).join(", ");
+    Some(Times { clock: Clock::Utc, t, used: used.to_vec(), how: format!("{named} (UTC)") })
+}
+
 /// The time of each row.
 fn times(table: &Table<'_>, choices: &Choices) -> Result<Times, ImportError> {
+    if let Some(times) = in_columns(table).filter(|_| !choices.columns.contains_key("t")) {
+        return Ok(times);
+    }
     let field = time_field(table, choices.columns.get("t").map(String::as_str))?;
     let texts = |field: usize| table.rows.iter().map(move |(_, fields)| fields[field]);
     let first = |field: &usize| texts(*field).find(|t| !t.is_empty()).unwrap_or("");
@@ -270,28 +322,48 @@ fn times(table: &Table<'_>, choices: &Choices) -> Result<Times, ImportError> {
     let rows = 0..table.rows.len();
     let timed = digits || most(&|t| time_of_day(t).is_some());
     let dated = date.filter(|date| timed && texts(*date).any(|t| date_time(t, order).is_some()));
-    let mut times = if most(&|t| date_time(t, order).is_some()) {
-        let t = texts(field).map(|t| date_time(t, order).unwrap_or(f64::NAN)).collect();
-        let how = format!("`{name}`, a date and time (UTC where it has no zone{unsure})");
+    // `08.05.10` beside a date is a time of day.
+    let mut times = if dated.is_none() && most(&|t| date_time(t, order).is_some()) {
+        let t: Vec<f64> = texts(field).map(|t| date_time(t, order).unwrap_or(f64::NAN)).collect();
+        // `Time (UTC+2)` has a zone for all that have none themselves.
+        let zone = zone(name).filter(|_| !texts(field).any(has_zone));
+        let t = t.into_iter().map(|t: f64| t - zone.unwrap_or(0.0)).collect();
+        let how = match zone {
+            Some(_) => format!("`{name}`, a date and time with the zone of its name{unsure}"),
+            None => format!("`{name}`, a date and time (UTC where it has no zone{unsure})"),
+        };
         Times { clock: Clock::Utc, t, used: vec![field], how }
     } else if let Some(date) = dated {
-        let how = format!("`{}` and `{name}` (UTC{unsure})", table.names[date].0);
-        let t = rows.map(|row| day(row, date) + of_day(row)).collect();
+        let zone = [&table.names[date].0, name].into_iter().find_map(|name| zone(name)).unwrap_or(0.0);
+        let words = if zone == 0.0 { "UTC" } else { "the zone of its name" };
+        let how = format!("`{}` and `{name}` ({words}{unsure})", table.names[date].0);
+        let t = rows.map(|row| day(row, date) + of_day(row) - zone).collect();
         Times { clock: Clock::Utc, t, used: vec![date, field], how }
     } else if timed {
         let mut t: Vec<f64> = rows.map(of_day).collect();
+        let hours = if texts(field).all(|t| t.is_empty() || is_of_hour(t)) { past_the_hour(&mut t) } else { 0 };
         past_midnight(&mut t);
-        Times { clock: Clock::Day, t, used: vec![field], how: format!("`{name}`, a time of day without a date") }
+        let how = match hours {
+            0 => format!("`{name}`, a time of day without a date"),
+            hours => format!(
+                "`{name}`, minutes and seconds, which start again {hours} times at the full hour and are counted on"
+            ),
+        };
+        Times { clock: Clock::Day, t, used: vec![field], how }
     } else {
-        let unit = choices.units.get("t").or(table.names[field].1.as_ref()).and_then(|u| Quantity::Time.factor(u));
+        let unit =
+            choices.units.get("t").or(table.names[field].1.as_ref()).map(String::as_str).or_else(|| time_unit(name));
+        let unit = unit.and_then(|u| Quantity::Time.factor(u));
         let NumericTime { clock, factor, zero, words } = numeric_time(&numbers, unit);
         let t = numbers.iter().map(|t| (t - zero) * factor).collect();
         Times { clock, t, used: vec![field], how: format!("`{name}`, {words}") }
     };
     if times.t.iter().filter(|t| t.is_finite()).count() < 2 {
         let (line, fields) = &table.rows[0];
-        let message =
-            format!("`{}` in column `{name}` is no time; name the time column with `--column t=NAME`", fields[field]);
+        let message = format!(
+            "`{}` in column `{name}` is no time that is read here: these are {FORMS}. If another column is the time, name it with `--column t=NAME`",
+            fields[field]
+        );
         return Err(ImportError::At { path: table.path.to_owned(), line: *line, column: field + 1, message });
     }
     if rounded(table, &times)
@@ -360,7 +432,7 @@ fn time_field(table: &Table<'_>, wanted: Option<&str>) -> Result<usize, ImportEr
     best.ok_or_else(|| ImportError::File {
         path: table.path.to_owned(),
         message: format!(
-            "no column is a time; the columns are {}. Name it with `--column t=NAME`",
+            "no column is a time; the columns are {}. Name it with `--column t=NAME`; times that are read are {FORMS}",
             names().collect::<Vec<_>>().join(", ")
         ),
     })

@@ -175,7 +175,7 @@ impl Samples {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::import::columns::signal::unwrap;
+    use crate::recording::import::signals::signal::unwrap;
     use std::f64::consts::TAU;
 
     /// A ship that turns twice in a wind of 8 m/s from 240 deg, which veers by some degrees, and what its anemometer shows in a reading.

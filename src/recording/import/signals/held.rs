@@ -90,7 +90,7 @@ fn thin(column: &mut Column, kept: &[bool]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::import::columns::log::Clock;
+    use crate::recording::import::signals::log::Clock;
 
     fn log(columns: &[(&str, Meaning, fn(usize) -> f64)]) -> Log {
         let column = |(name, meaning, value): &(&str, Meaning, fn(usize) -> f64)| Column {
