@@ -6,7 +6,7 @@ use super::answer::calibrate::ErrorRates;
 use super::answer::diagnosis::{Diagnosis, Trace};
 use super::answer::models::{OnUnseen, Whose, on_unseen, written};
 use super::answer::sailed::{Sailed, sailed};
-use super::answer::summary::{absorbed, adequacy, budget, confusable, detectable, moves, ranking, traces};
+use super::answer::summary::{absorbed, adequacy, budget, confusable, detectable, moves, ranking, resolved, traces};
 use super::answer::words::{Missing, Said, headline, next_trial};
 use super::error::DiagnoseError;
 use super::evidence::generic::corrected;
@@ -206,7 +206,7 @@ fn report(
         location_after: answer.kept.left_by_named().map(|l| l.location.clone()),
         ranking: ranking(first, &tests.candidates),
         absorbed: absorbed(first, &tests.candidates),
-        detectable: detectable(first, &tests.candidates, question.settings, &question.full),
+        detectable: resolved(detectable(first, &tests.candidates, question.settings, &question.full), &fit.runs),
         confusable: confusable(first, &tests.candidates),
         adequacy_before: adequacy(first),
         adequacy_after: adequacy(left.unwrap_or(first)),

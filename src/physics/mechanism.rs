@@ -66,9 +66,10 @@ impl Mechanism {
     }
 
     /// Whether its form is exact: an error of a sensor, or water that carries the ship, change how motion and measurements are related, and
-    /// no law of a force is in them that may be another.
+    /// no law of a force is in them that may be another. Clocks are not: what is late is taken along its rate.
     pub fn is_kinematic(&self) -> bool {
-        self.kind == Kind::Sensor || self.name == "current"
+        let is_clock = self.kind == Kind::Sensor && self.by_session;
+        (self.kind == Kind::Sensor && !is_clock) || self.name == "current"
     }
 
     /// Whether it is a vector over the ground, which the weather makes anew every day; the others are coefficients, which stay.

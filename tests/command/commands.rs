@@ -89,7 +89,7 @@ fn every_report_says_how_much_of_the_data_lies_outside_the_terms_ranges() {
         &["fit", "study.toml"][..],
         &["evaluate", "study.toml"],
         &["simulate", "study.toml"],
-        &["maneuver", "turning", "study.toml"],
+        &["maneuver", "turning", "study.toml", "--draws", "0"],
     ] {
         let text = study.does(command);
         assert!(text.lines().any(|l| l.starts_with("Validity: ")), "{command:?}: {text}");
@@ -99,7 +99,7 @@ fn every_report_says_how_much_of_the_data_lies_outside_the_terms_ranges() {
         assert!(value["result"]["validity"]["outside"].is_array());
     }
     // A crash stop turns the propeller astern, where a side force proportional to thrust is not valid.
-    let value = study.json(&["maneuver", "stopping", "study.toml"]);
+    let value = study.json(&["maneuver", "stopping", "study.toml", "--draws", "0"]);
     let outside = value["result"]["validity"]["outside"].as_array().unwrap();
     assert!(outside.iter().any(|o| o["term"] == "propeller" && o["quantity"] == "rate"), "{outside:?}");
     contains_all(&study.does(&["terms", "hull"]), &["valid for: Froude number 0 to 0.25, drift angle 0 to 20 deg"]);
@@ -421,6 +421,16 @@ fn the_demo_finds_and_confirms_what_is_concealed_in_its_study() {
     let output = run(&["check", "trimtab-demo/study.toml"]);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stdout));
     assert_eq!(demo.join("recordings").read_dir().unwrap().count(), 40);
+    // It is made again, and not where a file of it was edited.
+    let again = run(&["demo"]);
+    assert_eq!(again.status.code(), Some(0), "{}", text(&again.stderr));
+    let study = demo.join("study.toml");
+    let edited = std::fs::read_to_string(&study).unwrap() + "# mine\n";
+    std::fs::write(&study, &edited).unwrap();
+    let refused = run(&["demo"]);
+    assert_eq!(refused.status.code(), Some(2));
+    contains_all(&text(&refused.stderr), &["trimtab-demo/study.toml", "was changed after trimtab wrote it"]);
+    assert_eq!(std::fs::read_to_string(&study).unwrap(), edited);
 }
 
 #[test]

@@ -410,20 +410,3 @@ fn a_model_that_was_cut_anywhere_is_refused() {
     study.write("own.toml", &own);
     study.does(&["maneuver", "turning", "study.toml", "--model", "own.toml"]);
 }
-
-#[test]
-fn a_demo_that_was_edited_is_not_overwritten() {
-    let folder = tempfile::tempdir().unwrap();
-    let demo = || Command::new(TRIMTAB).arg("demo").current_dir(folder.path()).output().unwrap();
-    assert_eq!(demo().status.code(), Some(0));
-    let again = demo();
-    assert_eq!(again.status.code(), Some(0), "{}", text(&again.stderr));
-    whole(&folder.path().join("trimtab-demo/results"));
-    let study = folder.path().join("trimtab-demo/study.toml");
-    let edited = std::fs::read_to_string(&study).unwrap() + "# mine\n";
-    std::fs::write(&study, &edited).unwrap();
-    let refused = demo();
-    assert_eq!(refused.status.code(), Some(2));
-    contains_all(&text(&refused.stderr), &["trimtab-demo/study.toml", "was changed after trimtab wrote it"]);
-    assert_eq!(std::fs::read_to_string(&study).unwrap(), edited);
-}

@@ -155,12 +155,24 @@ fn what_is_left_out_is_said_and_kept_on_request() {
 #[test]
 fn pull_outs_and_a_spiral_are_sailed_and_say_whether_the_ship_is_stable_on_its_course() {
     let study = Study::new();
-    let said = study.does(&["maneuver", "pullout", "study.toml", "--out", "pulled"]);
+    let said = study.does(&["maneuver", "pullout", "study.toml", "--draws", "20", "--out", "pulled"]);
     contains_all(&said, &["yaw rate left [deg/s]", "time to 1/e [s]", "on its course."]);
     assert!(!said.contains("MSC.137"), "there is no criterion for it: {said}");
-    let json = study.json(&["maneuver", "spiral", "study.toml", "--angle", "15", "--depth", "20", "--out", "spiral"]);
+    let json = study.json(&[
+        "maneuver",
+        "spiral",
+        "study.toml",
+        "--angle",
+        "15",
+        "--depth",
+        "20",
+        "--draws",
+        "20",
+        "--out",
+        "spiral",
+    ]);
     assert!(at(&json, "result.trials.0.measures.points").as_array().unwrap().len() > 15);
-    let said = study.does(&["maneuver", "spiral", "study.toml", "--depth", "20"]);
+    let said = study.does(&["maneuver", "spiral", "study.toml", "--depth", "20", "--draws", "0"]);
     contains_all(&said, &["width of the loop [deg]", "Water of 20"]);
     study.refuses(&["maneuver", "turning", "study.toml", "--depth", "1"]);
 }

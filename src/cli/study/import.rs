@@ -53,8 +53,8 @@ Positions become metres sailed north and east on WGS84. Without u and v these \
 
 No gap is filled, but by --bridge and from channels with the same content (the yaw rate from the heading): \
     a row without a value keeps an empty field, a gap longer than --session-gap ends a recording, and a run \
-    ends at every gap; the answer says what that costs. A clock that changes by whole hours while the ship sails on \
-    (summer time, twelve hours without AM and PM) is counted on, with a note. Any other clock that steps back, and a \
+    ends at every gap; the answer says what that costs. A clock that goes forward by whole hours while the ship sails on \
+    (summer time), or back by twelve (no AM and PM), is counted on, with a note. Any other clock that steps back, and a \
     second file over the same time, make a recording of their own. Channels of other rates are brought to the rows of the slower \
     of position and heading: a faster one as its mean over a step, a slower one on straight lines between \
     two successive samples.";

@@ -63,10 +63,12 @@ pub struct Absorbed {
 pub struct Detectable {
     /// Mechanism.
     pub mechanism: String,
-    /// Size that is seen in 80 % of such data sets.
+    /// Size that is seen in 80 % of such data sets; of a time at least what is resolved, half a sample period.
     pub size: f64,
     /// Unit.
     pub unit: String,
+    /// Whether it is the size of a change between sessions: what is the same in all the coefficients of the ship take up.
+    pub of_change: bool,
 }
 
 /// How far a parameter moved.

@@ -5,7 +5,7 @@ use super::diagnosis::{Absorbed, Adequacy, Budget, Detectable, Likeness, Move, R
 use crate::diagnose::evidence::candidate::{Candidate, Extent};
 use crate::diagnose::evidence::wald::Wald;
 use crate::diagnose::search::screen::{Row, Screen};
-use crate::diagnose::settings::Settings;
+use crate::diagnose::settings::{RESOLVED_SAMPLES, Settings};
 use crate::likelihood::covariance::Z;
 use crate::likelihood::estimate::Estimate;
 use crate::likelihood::filter::{Filter, Pass, Wanted};
@@ -70,6 +70,13 @@ pub fn absorbed(s: &Screen, list: &[Candidate]) -> Vec<Absorbed> {
     out
 }
 
+/// Sizes of which a clock or a lag is at least what is named: [`RESOLVED_SAMPLES`] of the longest sample period of the runs.
+pub fn resolved(mut sizes: Vec<Detectable>, runs: &[Run]) -> Vec<Detectable> {
+    let least = RESOLVED_SAMPLES * runs.iter().map(|r| r.dt).fold(0.0, f64::max);
+    sizes.iter_mut().filter(|d| d.unit == "s").for_each(|d| d.size = d.size.max(least));
+    sizes
+}
+
 /// The size of every identifiable mechanism that is seen in 80 % of such data sets at the chance of a false name that is allowed.
 pub fn detectable(s: &Screen, list: &[Candidate], settings: &Settings, model: &Model) -> Vec<Detectable> {
     let Ok(normal) = Normal::new(0.0, 1.0) else { return Vec::new() };
@@ -88,7 +95,13 @@ pub fn detectable(s: &Screen, list: &[Candidate], settings: &Settings, model: &M
                 sd = sd.sqrt();
             }
             let p = &model.parameters[c.columns[0].parameter];
-            Detectable { mechanism: c.mechanism.name.into(), size: sd * c.columns[0].scale, unit: p.info.unit.into() }
+            let size = sd * c.columns[0].scale;
+            Detectable {
+                mechanism: c.mechanism.name.into(),
+                size,
+                unit: p.info.unit.into(),
+                of_change: c.mechanism.needs_reference && r.extent != Extent::All,
+            }
         })
         .collect();
     out.sort_by(|a, b| a.mechanism.cmp(&b.mechanism));
@@ -197,6 +210,11 @@ mod tests {
         let hidden = absorbed(&many, &list);
         let seen = detectable(&many, &list, &settings, &model);
         assert_eq!(hidden.len() + seen.len(), list.len());
+        // No clock is named that is off by less than half a sample of 1 s.
+        let clock = |all: &[Detectable]| all.iter().find(|d| d.mechanism == "time_skew").map(|d| d.size);
+        let data = runs(&model, 1);
+        let found = resolved(seen.clone(), &data);
+        assert_eq!(clock(&found), clock(&seen).map(|size| size.max(0.5 * data[0].dt)));
         assert!(seen.iter().all(|d| hidden.iter().all(|a| a.mechanism != d.mechanism)));
     }
 

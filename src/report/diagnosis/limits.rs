@@ -66,7 +66,10 @@ pub(super) fn limits(d: &Diagnosis) -> Vec<String> {
         .detectable
         .iter()
         .filter(|s| s.size.is_finite())
-        .map(|s| format!("{} {}", s.mechanism, units.text(s.size, &s.unit)))
+        .map(|s| {
+            let of = if s.of_change { " between sessions" } else { "" };
+            format!("{} {}{of}", s.mechanism, units.text(s.size, &s.unit))
+        })
         .collect();
     if !sizes.is_empty() {
         lines.push(format!("detected with a probability of 80 % from: {}", sizes.join("; ")));

@@ -88,8 +88,9 @@ fn cannot_show(d: &Diagnosis) -> Section {
     let mut table = Table::new(["mechanism", "detected from", "unit"]);
     for s in d.detectable.iter().filter(|s| s.size.is_finite()) {
         let (factor, unit) = units.human(&s.unit);
+        let of = if s.of_change { ", a change between sessions" } else { "" };
         table.row([
-            crate::report::diagnosis::names::title_of(&d.model, &s.mechanism).to_owned(),
+            format!("{}{of}", crate::report::diagnosis::names::title_of(&d.model, &s.mechanism)),
             sig(s.size * factor, 3),
             unit.to_owned(),
         ]);
