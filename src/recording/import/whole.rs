@@ -3,7 +3,7 @@
 
 use super::columns::choose::{Choice, Choices, Chosen, Unused, choose};
 use super::columns::names::meaning;
-use super::columns::take::{Signals, Taken, needed, take};
+use super::columns::take::{Signals, Taken, take};
 use super::error::{ImportError, flag};
 use super::formats::clock::written;
 use super::formats::read::read;
@@ -11,6 +11,7 @@ use super::overlap::{range, shifts};
 use super::rows::{Rows, rows};
 use super::signals::fills::take_out;
 use super::signals::held::release;
+use super::signals::log::needed;
 use super::signals::log::{Clock, Log, Meaning};
 use crate::recording::wrap::repair;
 use crate::recording::{Channel, Driven};

@@ -5,10 +5,9 @@ use super::actuators::by_names;
 use super::agree::{Sight, heading};
 use super::names::{Reading, VAGUELY, by_revolutions, is_second_choice, is_unit, reading, source};
 use super::orders::follows;
-use super::take::needed;
 use crate::files::suggestion;
 use crate::recording::import::error::ImportError;
-use crate::recording::import::signals::log::{Column, Log, Meaning};
+use crate::recording::import::signals::log::{Column, Log, Meaning, needed};
 use crate::recording::import::signals::motion::Track;
 use crate::recording::import::signals::place::places;
 use crate::recording::import::signals::signal::Signal;
@@ -142,40 +141,8 @@ fn heading_of_courses(candidates: &mut BTreeMap<Meaning, Vec<Candidate>>) {
 /// # Errors
 /// [`ImportError::Choice`] for a column that no file has.
 pub fn choose<'a>(logs: &'a [Log], choices: &Choices) -> Result<Choice<'a>, ImportError> {
-    let names = named(logs);
-    let forced = forced(&names, choices)?;
-    let free: Vec<(&str, Option<&str>)> = names
-        .iter()
-        .filter(|(name, _)| !forced.contains_key(*name))
-        .map(|(name, columns)| (*name, columns.first().and_then(|c| c.unit.as_deref())))
-        .collect();
-    let open: Vec<Channel> = choices
-        .driven
-        .commands
-        .iter()
-        .copied()
-        .filter(|c| !forced.values().any(|m| *m == Meaning::Channel(*c)))
-        .collect();
-    let named = by_names(&free, &open);
-    let axes = axes(&names);
-    let mut candidates: BTreeMap<Meaning, Vec<Candidate<'a>>> = BTreeMap::new();
     let mut unused = Vec::new();
-    for (name, columns) in names {
-        let of_actuator = named.get(name).map(|channel| (Meaning::Channel(*channel), 1.0));
-        let is_forced = forced.contains_key(name);
-        let axis = axes.iter().find(|(axis, _)| *axis == name).filter(|_| !is_forced).map(|(_, m)| (*m, 1.0));
-        match of_actuator.or(axis).or_else(|| read(name, &columns, &forced)) {
-            Some((meaning, _)) if !is_forced && !choices.has(meaning) => {
-                let why = format!("the ship file has no {}", if meaning == SHAFT { "propeller" } else { "rudder" });
-                unused.push(Unused { column: name.to_owned(), why });
-            }
-            Some((meaning, explained)) => {
-                let forced = is_forced;
-                candidates.entry(meaning).or_default().push(Candidate { name, columns, explained, forced });
-            }
-            None => unused.push(Unused { column: name.to_owned(), why: "nothing here uses it".to_owned() }),
-        }
-    }
+    let mut candidates = candidates(logs, choices, &mut unused)?;
     heading_of_courses(&mut candidates);
     let mut order: Vec<Meaning> = candidates.keys().copied().collect();
     order.sort_by_key(|meaning| (turn(*meaning), *meaning));
@@ -220,6 +187,54 @@ pub fn choose<'a>(logs: &'a [Log], choices: &Choices) -> Result<Choice<'a>, Impo
         let why = "the direction from north is taken for that of the wind".to_owned();
         unused.extend(angle.first().map(|c| Unused { column: c.name.clone(), why }));
     }
+    let asked = ask_for_units(&mut chosen, &mut unused, choices);
+    Ok(Choice { chosen, unused, asked, decided })
+}
+
+/// The candidates by what they may be; the columns that are none are listed.
+fn candidates<'a>(
+    logs: &'a [Log],
+    choices: &Choices,
+    unused: &mut Vec<Unused>,
+) -> Result<BTreeMap<Meaning, Vec<Candidate<'a>>>, ImportError> {
+    let names = named(logs);
+    let forced = forced(&names, choices)?;
+    let free: Vec<(&str, Option<&str>)> = names
+        .iter()
+        .filter(|(name, _)| !forced.contains_key(*name))
+        .map(|(name, columns)| (*name, columns.first().and_then(|c| c.unit.as_deref())))
+        .collect();
+    let open: Vec<Channel> = choices
+        .driven
+        .commands
+        .iter()
+        .copied()
+        .filter(|c| !forced.values().any(|m| *m == Meaning::Channel(*c)))
+        .collect();
+    let named = by_names(&free, &open);
+    let axes = axes(&names);
+    let mut candidates: BTreeMap<Meaning, Vec<Candidate<'a>>> = BTreeMap::new();
+    for (name, columns) in names {
+        let of_actuator = named.get(name).map(|channel| (Meaning::Channel(*channel), 1.0));
+        let is_forced = forced.contains_key(name);
+        let axis = axes.iter().find(|(axis, _)| *axis == name).filter(|_| !is_forced).map(|(_, m)| (*m, 1.0));
+        match of_actuator.or(axis).or_else(|| read(name, &columns, &forced)) {
+            Some((meaning, _)) if !is_forced && !choices.has(meaning) => {
+                let why = format!("the ship file has no {}", if meaning == SHAFT { "propeller" } else { "rudder" });
+                unused.push(Unused { column: name.to_owned(), why });
+            }
+            Some((meaning, explained)) => {
+                let forced = is_forced;
+                candidates.entry(meaning).or_default().push(Candidate { name, columns, explained, forced });
+            }
+            None => unused.push(Unused { column: name.to_owned(), why: "nothing here uses it".to_owned() }),
+        }
+    }
+    Ok(candidates)
+}
+
+/// The questions for units that are stated and not known; what is not needed is left out with its own.
+fn ask_for_units(chosen: &mut Chosen<'_>, unused: &mut Vec<Unused>, choices: &Choices) -> Vec<String> {
     let mut asked = Vec::new();
     chosen.retain(|meaning, columns| {
         let Some(question) = unknown_unit(*meaning, columns, choices) else { return true };
@@ -230,7 +245,7 @@ pub fn choose<'a>(logs: &'a [Log], choices: &Choices) -> Result<Choice<'a>, Impo
         unused.extend(columns.first().map(|c| Unused { column: c.name.clone(), why: question }));
         false
     });
-    Ok(Choice { chosen, unused, asked, decided })
+    asked
 }
 
 /// What is ordered of an actuator by what is measured of it.

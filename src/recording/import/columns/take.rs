@@ -7,7 +7,7 @@ use super::evidence::{Given, Known, Verdict, direction, other, rotation, rudder,
 use crate::numerals::sig;
 use crate::recording::Channel;
 use crate::recording::import::error::ImportError;
-use crate::recording::import::signals::log::{Column, Meaning};
+use crate::recording::import::signals::log::{Column, Meaning, needed};
 use crate::recording::import::signals::motion::{AGREE, Track};
 use crate::recording::import::signals::place::places;
 use crate::recording::import::signals::signal::{Signal, Tidied, median};
@@ -79,20 +79,7 @@ pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportErr
         axes.iter().for_each(|axis| signals.turn_axis(*axis));
         known.track = get(&signals, Channel::X).zip(get(&signals, Channel::Y)).and_then(|(x, y)| Track::of(&x, &y));
     }
-    if let Some(columns) = chosen.get(&Meaning::Variation) {
-        let verdict = other(Meaning::Variation, columns, given(Meaning::Variation)?.as_ref());
-        // Where no unit is given, that of the heading which it corrects: a variation of a few degrees is small in either.
-        let corrected = chosen.get(&Meaning::Channel(Channel::Psi)).map(|psi| heading_unit(psi, known.track.as_ref()));
-        let (factor, unit) = match (&verdict, corrected) {
-            (Ok(verdict), _) => (verdict.factor, verdict.unit.as_str()),
-            (Err(_), Some(1.0)) => (1.0, "rad"),
-            (Err(_), _) => (1f64.to_radians(), "deg"),
-        };
-        let (signal, tidied) = Signal::new(columns, factor, 0.0, true);
-        let name = columns.first().map_or("", |c| c.name.as_str());
-        known.variation = median(signal.v.clone()).map(|v| (v, name.to_owned()));
-        signals.list(Meaning::Variation, columns, &signal, tidied, unit, "positive to the east".to_owned());
-    }
+    known.variation = signals.variation(chosen, given(Meaning::Variation)?.as_ref(), known.track.as_ref());
     for meaning in [Meaning::Channel(Channel::Psi), Meaning::Course] {
         if let Some(columns) = chosen.get(&meaning) {
             let verdict = direction(meaning, columns, given(meaning)?.as_ref(), &known);
@@ -140,12 +127,7 @@ pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportErr
     if !signals.asked.is_empty() {
         return Err(ImportError::Undecided(signals.asked));
     }
-    let named = |meaning: Meaning| {
-        let columns = chosen.get(&meaning).and_then(|c| c.first());
-        columns.map_or_else(|| meaning.name().to_owned(), |c| c.name.clone())
-    };
-    let doubts = doubts(&signals.by, &named);
-    signals.notes.splice(0..0, doubts);
+    signals.doubt_winds(chosen);
     Ok(signals)
 }
 
@@ -227,18 +209,6 @@ fn given(meaning: Meaning, columns: &[&Column], choices: &Choices) -> Result<Opt
 /// Whether a position is called north by its name.
 fn names_north(columns: &[&Column]) -> bool {
     columns.iter().any(|c| c.name.to_lowercase().contains("north"))
-}
-
-/// Channels without which nothing can be simulated, or which measure the motion: their unit must be known. The yaw rate follows from the heading.
-pub fn needed(meaning: Meaning) -> bool {
-    use Channel::{Delta, N, Psi, U, V, X, Y};
-    match meaning {
-        Meaning::Channel(channel) => {
-            [X, Y, Psi, U, V, N, Delta].contains(&channel) || matches!(channel, Channel::Command(_))
-        }
-        Meaning::WindAngle | Meaning::Variation => false,
-        _ => true,
-    }
 }
 
 impl Signals {
@@ -344,6 +314,38 @@ impl Signals {
         let text =
             format!("WARNING: the {} is {words}; if it is right as it is, pass `--unit {name}=deg`", meaning.words());
         self.notes.insert(0, text);
+    }
+
+    /// The magnetic variation \[rad\] and its column.
+    fn variation(
+        &mut self,
+        chosen: &Chosen<'_>,
+        given: Option<&Given>,
+        track: Option<&Track>,
+    ) -> Option<(f64, String)> {
+        let columns = chosen.get(&Meaning::Variation)?;
+        let verdict = other(Meaning::Variation, columns, given);
+        // Where no unit is given, that of the heading which it corrects: a variation of a few degrees is small in either.
+        let corrected = chosen.get(&Meaning::Channel(Channel::Psi)).map(|psi| heading_unit(psi, track));
+        let (factor, unit) = match (&verdict, corrected) {
+            (Ok(verdict), _) => (verdict.factor, verdict.unit.as_str()),
+            (Err(_), Some(1.0)) => (1.0, "rad"),
+            (Err(_), _) => (1f64.to_radians(), "deg"),
+        };
+        let (signal, tidied) = Signal::new(columns, factor, 0.0, true);
+        let name = columns.first().map_or("", |c| c.name.as_str());
+        self.list(Meaning::Variation, columns, &signal, tidied, unit, "positive to the east".to_owned());
+        median(signal.v).map(|v| (v, name.to_owned()))
+    }
+
+    /// Reports first what the motion says against the winds.
+    fn doubt_winds(&mut self, chosen: &Chosen<'_>) {
+        let named = |meaning: Meaning| {
+            let columns = chosen.get(&meaning).and_then(|c| c.first());
+            columns.map_or_else(|| meaning.name().to_owned(), |c| c.name.clone())
+        };
+        let doubts = doubts(&self.by, &named);
+        self.notes.splice(0..0, doubts);
     }
 
     /// Leaves out a course over ground that is none: that of a receiver is the track's own direction, so that no heading is nearer to it.

@@ -142,3 +142,15 @@ impl Meaning {
         matches!(self, Self::Channel(Channel::Delta | Channel::DeltaOrder))
     }
 }
+
+/// Channels without which nothing can be simulated, or which measure the motion: their unit must be known. The yaw rate follows from the heading.
+pub fn needed(meaning: Meaning) -> bool {
+    use Channel::{Delta, N, Psi, U, V, X, Y};
+    match meaning {
+        Meaning::Channel(channel) => {
+            [X, Y, Psi, U, V, N, Delta].contains(&channel) || matches!(channel, Channel::Command(_))
+        }
+        Meaning::WindAngle | Meaning::Variation => false,
+        _ => true,
+    }
+}
