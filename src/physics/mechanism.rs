@@ -68,7 +68,7 @@ impl Mechanism {
     /// Whether its form is exact: an error of a sensor, or water that carries the ship, change how motion and measurements are related, and
     /// no law of a force is in them that may be another. Clocks are not: what is late is taken along its rate.
     pub fn is_kinematic(&self) -> bool {
-        let is_clock = self.kind == Kind::Sensor && self.by_session;
+        let is_clock = self.by_session;
         (self.kind == Kind::Sensor && !is_clock) || self.name == "current"
     }
 

@@ -1,7 +1,7 @@
 //! The answer of one analysis: what is named, what was withdrawn, the verdict; and the same analysis repeated to see whether it is
 //! stable. It runs the steps in order; arithmetic and thresholds are in other files.
 
-use super::conclude::{cap, cap_law, conclude, lead};
+use super::conclude::{cap, capped_law, conclude, lead};
 use crate::diagnose::error::DiagnoseError;
 use crate::diagnose::law::Law;
 use crate::diagnose::proof::finding::{Finding, PUSH};
@@ -46,7 +46,9 @@ impl Answer {
     /// This answer under the proof of all findings together.
     pub fn capped(mut self, proof: Option<&HeldOut>) -> Self {
         cap(&mut self.findings, proof.is_some_and(HeldOut::is_worse));
-        cap_law(&mut self.law, proof.is_none_or(HeldOut::is_better));
+        if let Some(law) = &mut self.law {
+            law.grade = capped_law(law.grade, proof.is_none_or(HeldOut::is_better));
+        }
         self
     }
 

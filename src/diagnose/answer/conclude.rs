@@ -1,7 +1,6 @@
 //! The verdict once every finding has its grade: what is left of the decision on the tests, as a pure function.
 //! It estimates nothing and looks at no runs.
 
-use crate::diagnose::law::Law;
 use crate::diagnose::proof::finding::Finding;
 use crate::diagnose::proof::grade::{Grade, LawGrade};
 use crate::diagnose::search::decide::{Verdict, named};
@@ -38,12 +37,10 @@ pub fn lead(decided: Verdict, findings: &mut [Finding]) -> Verdict {
     }
 }
 
-/// A law is confirmed by the models that are written, which are within their bounds: where these are not better on unseen runs with it
+/// The grade of a law under the models that are written, which are within their bounds: where these are not better on unseen runs with it
 /// than without, it describes the training runs alone.
-pub fn cap_law(law: &mut Option<Law>, better_together: bool) {
-    if let Some(law) = law.as_mut().filter(|law| law.is_confirmed() && !better_together) {
-        law.grade = LawGrade::Exploratory;
-    }
+pub fn capped_law(grade: LawGrade, better_together: bool) -> LawGrade {
+    if grade == LawGrade::Confirmed && !better_together { LawGrade::Exploratory } else { grade }
 }
 
 /// What is confirmed by itself is suspected where all findings together make unseen runs worse than the base model: each may then stand
@@ -102,6 +99,13 @@ mod tests {
             cap(&mut findings, worse);
             assert_eq!(findings.map(|f| f.grade), [left, Grade::Suspected]);
         }
+    }
+
+    #[test]
+    fn a_law_is_confirmed_only_where_the_models_that_are_written_are_better_with_it() {
+        use LawGrade::{Confirmed, Exploratory, Refuted};
+        assert_eq!([true, false].map(|better| capped_law(Confirmed, better)), [Confirmed, Exploratory]);
+        assert_eq!([Exploratory, Refuted].map(|grade| capped_law(grade, false)), [Exploratory, Refuted]);
     }
 
     #[test]

@@ -9,7 +9,7 @@ use crate::recording::audit::limits::{
     SCALE_EVIDENCE,
 };
 use crate::statistics::median;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// What explains a run better than the coefficients of the other runs as they are.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,15 +35,21 @@ fn total<'c>(curves: impl Iterator<Item = &'c Curve>) -> Option<Sums> {
     sum
 }
 
-/// Coefficients from sums; `less` is taken out of them.
-pub(in crate::recording::audit) fn coefficients(sum: &Sums, less: Option<&Sums>) -> Option<Vec<f64>> {
+/// The matrix of products of columns, factorised with each column scaled to one and a ridge of 1e-9, and the scales; `less` is taken out of
+/// the sums.
+fn normal(sum: &Sums, less: Option<&Sums>) -> Option<(Cholesky<f64, Dyn>, DVector<f64>)> {
     let n = sum.response.len();
-    let of = |i: usize, all: &[f64], some: Option<&[f64]>| all[i] - some.map_or(0.0, |some| some[i]);
-    let a = DMatrix::from_fn(n, n, |i, j| of(i * n + j, &sum.columns, less.map(|l| &l.columns[..])));
-    let b = DVector::from_fn(n, |i, _| of(i, &sum.response, less.map(|l| &l.response[..])));
+    let a = DMatrix::from_fn(n, n, |i, j| sum.columns[i * n + j] - less.map_or(0.0, |l| l.columns[i * n + j]));
     let scale = a.diagonal().map(|d| if d > 0.0 { d.sqrt().recip() } else { 0.0 });
     let scaled = DMatrix::from_fn(n, n, |i, j| a[(i, j)] * scale[i] * scale[j] + f64::from(u8::from(i == j)) * 1e-9);
-    let solved = scaled.cholesky()?.solve(&b.component_mul(&scale)).component_mul(&scale);
+    Some((scaled.cholesky()?, scale))
+}
+
+/// Coefficients from sums; `less` is taken out of them.
+pub(in crate::recording::audit) fn coefficients(sum: &Sums, less: Option<&Sums>) -> Option<Vec<f64>> {
+    let b = DVector::from_fn(sum.response.len(), |i, _| sum.response[i] - less.map_or(0.0, |l| l.response[i]));
+    let (normal, scale) = normal(sum, less)?;
+    let solved = normal.solve(&b.component_mul(&scale)).component_mul(&scale);
     Some(solved.iter().copied().collect())
 }
 
@@ -97,12 +103,8 @@ impl<'c> Pool<'c> {
     /// channel's own columns: where the channel only jitters in the others, they do not say what it does. `usual` is what is left of a window;
     /// windows overlap, so that these are worth fewer samples.
     fn unsure(&self, curve: &Curve, usual: f64) -> Option<f64> {
-        let n = self.sum.response.len();
-        let less = self.has(curve).then(|| curve.at_zero());
-        let of = |i: usize, j: usize| self.sum.columns[i * n + j] - less.map_or(0.0, |l| l.columns[i * n + j]);
-        let scale = DVector::from_fn(n, |i, _| if of(i, i) > 0.0 { of(i, i).sqrt().recip() } else { 0.0 });
-        let scaled = DMatrix::from_fn(n, n, |i, j| of(i, j) * scale[i] * scale[j] + f64::from(u8::from(i == j)) * 1e-9);
-        let inverse = scaled.cholesky()?.inverse();
+        let (normal, scale) = normal(&self.sum, self.has(curve).then(|| curve.at_zero()))?;
+        let (inverse, n) = (normal.inverse(), scale.len());
         let own = curve.own.min(n);
         let products = &curve.at_zero().columns;
         let trace: f64 = (0..own)

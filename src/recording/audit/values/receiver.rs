@@ -155,6 +155,11 @@ fn weights<const N: usize>(left_out: impl Fn(usize) -> bool) -> [f64; N] {
     std::array::from_fn(|i| (0..4).map(|j| row[j] * a[(i, j)]).sum())
 }
 
+/// What weights read off positions in a row; one without a weight may be missing.
+fn by(weights: &[f64], rows: &[[f64; STATES]], c: usize) -> f64 {
+    rows.iter().zip(weights).filter(|(_, w)| **w != 0.0).map(|(m, w)| w * m[c]).sum()
+}
+
 /// Steps and positions about a sample.
 struct About<'r> {
     /// Positions of the run.
@@ -183,8 +188,7 @@ impl About<'_> {
     fn lasts(&self, wide: &[f64; 4 * SIDE]) -> Option<bool> {
         let from = self.sample.checked_sub(2 * SIDE)?;
         let rows = self.rows.get(from..from + 4 * SIDE)?;
-        let far: [f64; 2] =
-            std::array::from_fn(|c| rows.iter().zip(wide).filter(|(_, w)| **w != 0.0).map(|(m, w)| w * m[c]).sum());
+        let far: [f64; 2] = std::array::from_fn(|c| by(wide, rows, c));
         let [x, y] = self.step;
         let share = (far[0] * x + far[1] * y) / (x * x + y * y);
         share.is_finite().then_some(share > 0.5)
@@ -200,12 +204,10 @@ pub fn jumps(runs: &[Run], length: f64) -> Vec<Vec<Jump>> {
     let all: [f64; 2 * SIDE] = weights(|_| false);
     let without: [[f64; 2 * SIDE]; 2 * SIDE] = std::array::from_fn(|i| weights(|j| j == i));
     let wide: [f64; 4 * SIDE] = weights(|i| (SIDE..3 * SIDE).contains(&i));
-    let by = |weights: &[f64], rows: &[[f64; 6]], c: usize| -> f64 {
-        rows.iter().zip(weights).filter(|(_, w)| **w != 0.0).map(|(m, w)| w * m[c]).sum()
-    };
-    let step = |rows: &[[f64; 6]], c: usize| by(&all, rows, c);
+    let step = |rows: &[[f64; STATES]], c: usize| by(&all, rows, c);
     // A jump stays: without any one sample it is there still, where a single wild fix is not.
-    let stays = |rows: &[[f64; 6]], least: f64| without.iter().all(|w| by(w, rows, 0).hypot(by(w, rows, 1)) > least);
+    let stays =
+        |rows: &[[f64; STATES]], least: f64| without.iter().all(|w| by(w, rows, 0).hypot(by(w, rows, 1)) > least);
     // Of each run, with the sample after the step; NaN where one of the samples is.
     let rows: Vec<Vec<[f64; STATES]>> = runs.iter().map(|r| r.measured.iter().map(or_nan).collect()).collect();
     let steps_of = |rows: &Vec<[f64; STATES]>| -> Vec<[f64; 2]> {

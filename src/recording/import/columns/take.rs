@@ -127,7 +127,9 @@ pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportErr
     if !signals.asked.is_empty() {
         return Err(ImportError::Undecided(signals.asked));
     }
-    signals.doubt_winds(chosen);
+    if let Some(track) = &known.track {
+        signals.doubt_winds(chosen, track);
+    }
     Ok(signals)
 }
 
@@ -284,9 +286,9 @@ impl Signals {
             self.notes.push(format!("{} {text}", places.nowhere));
         }
         let why = origin_words(places.origin);
-        let [told_lat, told_lon] = &places.told;
-        self.list(Meaning::Latitude, lat, told_lat, places.tidied, places.form, why.clone());
-        self.list(Meaning::Longitude, lon, told_lon, Tidied::default(), places.form, why);
+        let [recorded_lat, recorded_lon] = &places.recorded;
+        self.list(Meaning::Latitude, lat, recorded_lat, places.tidied, places.form, why.clone());
+        self.list(Meaning::Longitude, lon, recorded_lon, Tidied::default(), places.form, why);
         self.by.insert(Meaning::Channel(Channel::X), places.x);
         self.by.insert(Meaning::Channel(Channel::Y), places.y);
         self.origin = Some(places.origin);
@@ -338,13 +340,13 @@ impl Signals {
         median(signal.v).map(|v| (v, name.to_owned()))
     }
 
-    /// Reports first what the motion says against the winds.
-    fn doubt_winds(&mut self, chosen: &Chosen<'_>) {
+    /// Reports first what the track says against the winds.
+    fn doubt_winds(&mut self, chosen: &Chosen<'_>, track: &Track) {
         let named = |meaning: Meaning| {
             let columns = chosen.get(&meaning).and_then(|c| c.first());
             columns.map_or_else(|| meaning.name().to_owned(), |c| c.name.clone())
         };
-        let doubts = doubts(&self.by, &named);
+        let doubts = doubts(&self.by, track, &named);
         self.notes.splice(0..0, doubts);
     }
 

@@ -2,6 +2,7 @@
 //! A time without a zone counts as UTC; no daylight saving is guessed.
 
 use crate::recording::import::signals::log::Clock;
+use crate::recording::import::signals::signal::median;
 use jiff::civil::DateTime;
 use jiff::fmt::rfc2822;
 use jiff::tz::TimeZone;
@@ -253,12 +254,8 @@ pub fn is_of_hour(text: &str) -> bool {
 
 /// Times of minutes and seconds that go on past the full hour; gives how often.
 pub fn past_the_hour(times: &mut [f64]) -> usize {
-    let mut steps: Vec<f64> = times.windows(2).map(|t| t[1] - t[0]).filter(|s| *s > 0.0).collect();
-    if steps.is_empty() {
-        return 0;
-    }
-    let middle = steps.len() / 2;
-    let longest = AT_THE_HOUR * *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let steps = times.windows(2).map(|t| t[1] - t[0]).filter(|s| *s > 0.0).collect();
+    let Some(longest) = median(steps).map(|step| AT_THE_HOUR * step) else { return 0 };
     let (mut hours, mut last) = (0, f64::NAN);
     for t in times.iter_mut().filter(|t| t.is_finite()) {
         if *t < last && *t + 3600.0 - last <= longest {

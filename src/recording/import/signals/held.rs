@@ -17,10 +17,8 @@ const POSITIONS: [[Meaning; 2]; 2] =
 pub fn release(log: &mut Log, meaning: impl Fn(&Column) -> Option<Meaning>) {
     let meanings: Vec<Option<Meaning>> = log.columns.iter().map(meaning).collect();
     for [north, east] in POSITIONS {
-        let of = |wanted: Meaning| move |m: &Option<Meaning>| *m == Some(wanted);
-        let firsts: Vec<usize> = (0..meanings.len()).filter(|i| of(north)(&meanings[*i])).collect();
-        for first in firsts {
-            let with = |j: &usize| of(east)(&meanings[*j]) && log.columns[*j].t == log.columns[first].t;
+        for first in (0..meanings.len()).filter(|i| meanings[*i] == Some(north)) {
+            let with = |j: &usize| meanings[*j] == Some(east) && log.columns[*j].t == log.columns[first].t;
             let Some(second) = (0..meanings.len()).filter(with).min_by_key(|j| j.abs_diff(first)) else { continue };
             let (a, b) = (&log.columns[first], &log.columns[second]);
             // Rows of one time are written twice, and no fix is held in them.

@@ -152,14 +152,14 @@ impl Track {
             let length = both.iter().flatten().map(|a| a[0]).fold(0.0, f64::max);
             (length, both[0].is_some_and(|[length, off]| length > AGREE && off.abs() < ALONG))
         };
-        let ([deg, rad], degree) = ([of(DEGREE), of(1.0)], DEGREE);
+        let [deg, rad] = [DEGREE, 1.0].map(of);
         let sure = |a: (f64, bool), b: (f64, bool)| (a.0 > AGREE && a.0 > b.0 + 0.1) || (a.1 && !b.1);
         if sure(deg, rad) {
-            Some(DirectionUnit { factor: degree, by_track: true })
+            Some(DirectionUnit { factor: DEGREE, by_track: true })
         } else if sure(rad, deg) {
             Some(DirectionUnit { factor: 1.0, by_track: true })
         } else {
-            (largest > MOST_RADIANS).then_some(DirectionUnit { factor: degree, by_track: false })
+            (largest > MOST_RADIANS).then_some(DirectionUnit { factor: DEGREE, by_track: false })
         }
     }
 

@@ -15,7 +15,7 @@ pub struct Places {
     /// Latitude and longitude of the point \[deg\].
     pub origin: [f64; 2],
     /// Latitude and longitude as they were recorded.
-    pub told: [Signal; 2],
+    pub recorded: [Signal; 2],
     /// What was put in order among the latitudes.
     pub tidied: Tidied,
     /// How they are written.
@@ -51,8 +51,8 @@ pub fn places(lat: &[&Column], lon: &[&Column], units: [Option<f64>; 2]) -> Resu
         ..lat_signal.without_samples()
     };
     let (x, y) = (axis(0), axis(1));
-    let told = [lat_signal, lon_signal];
-    Ok(Some(Places { x, y, origin: sailed.origin, told, tidied, form: form.words(), nowhere }))
+    let recorded = [lat_signal, lon_signal];
+    Ok(Some(Places { x, y, origin: sailed.origin, recorded, tidied, form: form.words(), nowhere }))
 }
 
 /// How latitudes and longitudes are written.

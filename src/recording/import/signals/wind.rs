@@ -60,16 +60,14 @@ const WINDS: [Wind; 3] = [
     },
 ];
 
-/// What the motion of the ship says against the winds as they were taken. `names` are the columns by quantity.
-pub fn doubts(by: &BTreeMap<Meaning, Signal>, names: &impl Fn(Meaning) -> String) -> Vec<String> {
-    let of = |channel| by.get(&Meaning::Channel(channel));
-    let track = of(Channel::X).zip(of(Channel::Y)).and_then(|(x, y)| Track::of(x, y));
-    let (Some(track), Some(psi)) = (track, of(Channel::Psi)) else { return Vec::new() };
+/// What the track says against the winds as they were taken. `names` are the columns by quantity.
+pub fn doubts(by: &BTreeMap<Meaning, Signal>, track: &Track, names: &impl Fn(Meaning) -> String) -> Vec<String> {
+    let Some(psi) = by.get(&Meaning::Channel(Channel::Psi)) else { return Vec::new() };
     let mut doubts = Vec::new();
     let mut over_ground: Vec<Vec<[f64; 2]>> = Vec::new();
     for wind in &WINDS {
         let (Some(speed), Some(direction)) = (by.get(&wind.speed), by.get(&wind.direction)) else { continue };
-        let samples = Samples::new(&track, psi, speed, direction);
+        let samples = Samples::new(track, psi, speed, direction);
         over_ground.push(samples.over_ground(wind.reading));
         let Some(better) = samples.steadier(wind.reading) else { continue };
         let [speed, direction] = [wind.speed, wind.direction].map(names);
@@ -208,12 +206,17 @@ mod tests {
         all
     }
 
+    /// The doubts, each column by the name of its quantity.
+    fn doubted(by: &BTreeMap<Meaning, Signal>) -> Vec<String> {
+        let [x, y] = [Channel::X, Channel::Y].map(|c| &by[&Meaning::Channel(c)]);
+        doubts(by, &Track::of(x, y).unwrap(), &|meaning| meaning.name().to_owned())
+    }
+
     #[test]
     fn a_wind_that_turns_with_the_ship_is_doubted_and_the_reading_in_which_it_is_steady_named() {
-        let name = |meaning: Meaning| meaning.name().to_owned();
         for wind in &WINDS {
             for reading in READINGS {
-                let found = doubts(&by(reading, wind.speed, wind.direction), &name);
+                let found = doubted(&by(reading, wind.speed, wind.direction));
                 if reading == wind.reading {
                     assert!(found.is_empty(), "{reading:?}: {found:?}");
                 } else {
@@ -225,16 +228,15 @@ mod tests {
 
     #[test]
     fn true_and_apparent_wind_that_are_not_of_one_wind_contradict_each_other() {
-        let name = |meaning: Meaning| meaning.name().to_owned();
         let [own, _, apparent] = &WINDS;
         let mut both = by(own.reading, own.speed, own.direction);
         both.extend(by(apparent.reading, apparent.speed, apparent.direction));
-        assert!(doubts(&both, &name).is_empty());
+        assert!(doubted(&both).is_empty());
         // The true wind is written as the direction to which it blows, which is as steady.
         if let Some(direction) = both.get_mut(&own.direction) {
             direction.v.iter_mut().for_each(|d| *d += 0.5 * TAU);
         }
-        let found = doubts(&both, &name);
+        let found = doubted(&both);
         assert!(found.len() == 1 && found[0].contains("contradict"), "{found:?}");
     }
 }
