@@ -46,6 +46,7 @@ pub static CATALOGUE: &[&dyn AnyTerm] = &[
     &steering::rudder_gain::RudderGain,
     &steering::rudder_offset::RudderOffset,
     &steering::rudder_lag::RudderLag,
+    &steering::rudder_late::RudderLate,
     &steering::rudder_rate::RudderRate,
     &steering::rudder_stall::RudderStall,
     &hydrodynamics::crossflow::Crossflow,

@@ -363,6 +363,19 @@ mod tests {
     }
 
     #[test]
+    fn a_rudder_angle_that_is_recorded_late_is_named_and_no_clock_of_the_sensors() {
+        let (model, settings) = (model(), without_repetitions());
+        let question = Question::new(&model, &settings, &|_| ()).unwrap();
+        let all = runs(&with(&[("rudder_late.time", 4.0)]), 12);
+        let (train, unseen) = all.split_at(9);
+        let answer = Answer::new(&question, train, unseen);
+        let named: Vec<&str> = answer.findings.iter().map(|f| f.mechanism.as_str()).collect();
+        assert_eq!(named, ["rudder_late"], "{:?}", answer.findings);
+        let size = &answer.findings[0].parameters[0];
+        assert!((size.value - 4.0).abs() < 0.4, "{size:?}");
+    }
+
+    #[test]
     fn what_most_repetitions_do_not_find_is_withdrawn_and_what_one_does_not_find_is_suspected() {
         let (model, settings) = (model(), without_repetitions());
         let question = Question::new(&model, &settings, &|_| ()).unwrap();
