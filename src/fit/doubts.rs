@@ -234,10 +234,10 @@ impl ResidualStatistics {
 const BACKWARDS: f64 = 3.0;
 
 /// A free parameter with its estimate, standard error where the data give one, and unit.
-pub(in crate::fit) type Estimated<'a> = (&'a str, f64, Option<f64>, &'a str);
+pub(crate) type Estimated<'a> = (&'a str, f64, Option<f64>, &'a str);
 
 /// The actuators of a craft that push against their orders: a gain that is surely negative.
-pub(in crate::fit) fn backwards<'a>(ship: &Ship, estimates: impl Iterator<Item = Estimated<'a>>) -> Vec<Doubt> {
+pub(crate) fn backwards<'a>(ship: &Ship, estimates: impl Iterator<Item = Estimated<'a>>) -> Vec<Doubt> {
     let doubt = |(name, value, error, unit): Estimated<'a>| {
         let (actuator, parameter) = name.split_once('.')?;
         let is_negative = error.is_some_and(|error| value < -BACKWARDS * error);

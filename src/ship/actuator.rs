@@ -258,11 +258,15 @@ impl Actuator {
         components
     }
 
-    /// Whether another stands in its mirror place: abreast of it on the other side, driven alike, its direction the same or mirrored.
-    fn mirrors(&self, other: &Self) -> bool {
-        let abreast = self.y != 0.0 && self.y == -other.y && self.x == other.x;
-        let turned = self.angle == other.angle || self.angle == other.angle.map(|angle| -angle);
-        abreast && turned && self.law == other.law && self.drives() == other.drives()
+    /// Whether another stands in its mirror place: abreast of it on the other side, or on the same line at the other end; driven alike, its
+    /// direction the same or mirrored.
+    fn mirrors(&self, other: &Self, mirror: Mirror) -> bool {
+        let (opposite, turned): (bool, fn(f64) -> f64) = match mirror {
+            Mirror::Sides => (self.y != 0.0 && self.y == -other.y && self.x == other.x, |angle| -angle),
+            Mirror::Ends => (self.x != 0.0 && self.x == -other.x && self.y == other.y, |angle| 180.0 - angle),
+        };
+        let alike = self.angle == other.angle || self.angle == other.angle.map(turned);
+        opposite && alike && self.law == other.law && self.drives() == other.drives()
     }
 
     /// What is wrong with it by itself: key, value found (NaN for none), and what it should be.
@@ -364,16 +368,28 @@ pub fn channels(actuators: &[Actuator]) -> Vec<String> {
     actuators.iter().flat_map(of).collect()
 }
 
-/// The actuators of a list that stand in each other's mirror place, by their indices: each in one pair at most.
+/// What two actuators are the mirror image in.
+#[derive(Clone, Copy)]
+enum Mirror {
+    /// Port and starboard.
+    Sides,
+    /// Bow and stern.
+    Ends,
+}
+
+/// The actuators of a list that stand in each other's mirror place, by their indices: each in one pair at most, and with the one abreast of it
+/// before the one at the other end.
 pub fn pairs(actuators: &[Actuator]) -> Vec<[usize; 2]> {
     let mut pairs: Vec<[usize; 2]> = Vec::new();
-    for (i, own) in actuators.iter().enumerate() {
-        let is_alone = |k: &usize| !pairs.iter().flatten().any(|paired| paired == k);
-        let other = (i + 1..actuators.len()).filter(is_alone).find(|j| own.mirrors(&actuators[*j]));
-        if is_alone(&i)
-            && let Some(j) = other
-        {
-            pairs.push([i, j]);
+    for mirror in [Mirror::Sides, Mirror::Ends] {
+        for (i, own) in actuators.iter().enumerate() {
+            let is_alone = |k: &usize| !pairs.iter().flatten().any(|paired| paired == k);
+            let other = (i + 1..actuators.len()).filter(is_alone).find(|j| own.mirrors(&actuators[*j], mirror));
+            if is_alone(&i)
+                && let Some(j) = other
+            {
+                pairs.push([i, j]);
+            }
         }
     }
     pairs
@@ -478,6 +494,15 @@ mod tests {
             azimuths(-0.5),
         ];
         assert_eq!(pairs(&all), [[0, 4], [1, 3], [5, 6]]);
+        // The two ends of a ferry; what has one abreast of it is a pair with that.
+        let ferry = [
+            of("fore", 2.0, 0.0, ""),
+            of("port", -2.0, -1.0, ""),
+            of("starboard", -2.0, 1.0, ""),
+            of("aft", -2.0, 0.0, ""),
+        ];
+        assert_eq!(pairs(&ferry), [[1, 2], [0, 3]]);
+        assert!(pairs(&[of("fore", 2.0, 0.0, "angle = 0"), of("aft", -2.0, 0.0, "angle = 90")]).is_empty());
         let apart = [of("a", 0.0, -0.1, "angle = 0"), of("b", 0.1, 0.1, "angle = 0"), of("c", 0.0, 0.1, "angle = 30")];
         assert!(pairs(&apart).is_empty());
         let tau = Actuator { law: Law::Force, angle: None, ..apart[1].clone() };

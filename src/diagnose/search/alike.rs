@@ -4,13 +4,15 @@
 use super::screen::Screen;
 use super::selected::Selected;
 use crate::diagnose::evidence::candidate::{Candidate, Extent};
-use crate::diagnose::settings::FORM_TOLERANCE;
+use crate::diagnose::settings::{FORM_TOLERANCE, INDISTINGUISHABLE};
 use crate::likelihood::estimate::Estimate;
+use crate::physics::Kind;
 use nalgebra::DVector;
 
 /// The mechanisms that could take over nearly all of the gain of a selected one, the largest share first: once base parameters and
-/// nuisances are fitted too, their effects on these manoeuvres differ by no more than the law of a force is known. A force without
-/// a cause takes over the gain of any other and is not among them.
+/// nuisances are fitted too, their effects on these manoeuvres differ by no more than the law of a force is known, and those of errors of
+/// records and of actuators, whose laws are exact, by no more than can be distinguished. A force without a cause takes over the gain of any
+/// other and is not among them.
 pub fn class(of: &Selected, found: &Estimate, s: &Screen, candidates: &[Candidate]) -> Vec<(usize, f64)> {
     if of.extent != Extent::All {
         return Vec::new();
@@ -25,7 +27,16 @@ pub fn class(of: &Selected, found: &Estimate, s: &Screen, candidates: &[Candidat
         .filter(|r| r.candidate != of.candidate && r.visible && r.admissible && r.extent == Extent::All)
         .filter(|r| !candidates[r.candidate].mechanism.stand_in)
         .map(|r| (r.candidate, s.share_taken(of.candidate, &amplitude, r.candidate)))
-        .filter(|(_, share)| *share > 1.0 - FORM_TOLERANCE)
+        .filter(|(rival, share)| {
+            let both_exact =
+                [own, &candidates[*rival]].iter().all(|c| matches!(c.mechanism.kind, Kind::Sensor | Kind::Actuator));
+            let within = if both_exact {
+                INDISTINGUISHABLE / (0.5 * of.statistic).max(INDISTINGUISHABLE)
+            } else {
+                FORM_TOLERANCE
+            };
+            *share > 1.0 - within.min(FORM_TOLERANCE)
+        })
         .collect();
     class.sort_by(|a, b| b.1.total_cmp(&a.1));
     class

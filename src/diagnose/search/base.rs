@@ -7,12 +7,13 @@ use crate::diagnose::evidence::admit::{Admission, admit, followed};
 use crate::diagnose::settings::{
     EULER_EXACT, EULER_HOPELESS, Effort, FIRST, LEFT_TO_GAIN, LOSS_ROUNDS, REFIT, SETTLE, Settings,
 };
+use crate::fit::backwards;
 use crate::likelihood::estimate::{Estimate, estimate, left_to_gain, log_posterior, passes};
 use crate::likelihood::noise::NoisePrior;
 use crate::likelihood::noise_fit::guess;
 use crate::likelihood::parameters::base_parameters;
 use crate::model::{Model, ModelError};
-use crate::recording::audit::{Issue, settled};
+use crate::recording::audit::{Issue, Severity, settled};
 use crate::recording::{Measured, Run};
 use crate::simulate::{Integration, Method};
 use std::borrow::Cow;
@@ -98,7 +99,10 @@ impl BaseFit {
         (question.progress)("auditing recordings and integration step");
         let mut admission = admit(&base.model, integration, &base.noise, &kept, &at);
         admission.issues.extend(issues);
-        Self { estimate: base, prior, runs: kept, integration, admission }.read_as_euler().settled(question.settings)
+        Self { estimate: base, prior, runs: kept, integration, admission }
+            .read_as_euler()
+            .settled(question.settings)
+            .with_backwards()
     }
 
     /// The base fit at its optimum: where a step still promises more, it is solved within its bounds and constraints first, and estimated on from
@@ -112,6 +116,27 @@ impl BaseFit {
                 self.estimate = problem.again(&solved, SETTLE);
             }
         }
+        self
+    }
+
+    /// The same with a note on each actuator of the craft that pushes against its order: nothing that is named later mends that.
+    fn with_backwards(mut self) -> Self {
+        let Self { estimate, runs, integration, .. } = &self;
+        let Estimate { model, free, .. } = estimate;
+        if model.ship.actuators.is_empty() {
+            return self;
+        }
+        let covariance = estimate.information(*integration, runs).try_inverse();
+        let estimated = free.iter().enumerate().map(|(i, f)| {
+            let p = &model.parameters[f.column.parameter];
+            let error = covariance.as_ref().map(|c| c[(i, i)].max(0.0).sqrt() * f.column.scale);
+            (p.name.as_str(), f.value(model), error, p.info.unit)
+        });
+        let noted = backwards(&model.ship, estimated)
+            .into_iter()
+            .map(|doubt| Issue::new(Severity::Warning, "backwards", doubt.sentence, "correct that first"));
+        let noted: Vec<Issue> = noted.collect();
+        self.admission.issues.extend(noted);
         self
     }
 

@@ -312,6 +312,12 @@ impl CandidateTests<'_> {
         !(*needs_reference && *kind == Kind::Ship) || own.min(all - own) > self.columns.len()
     }
 
+    /// Whether a group of sessions has more than half of the recordings.
+    fn is_most(&self, group: &[String]) -> bool {
+        let own: usize = group.iter().filter_map(|s| self.recordings.get(s.as_str())).sum();
+        2 * own > self.recordings.values().sum()
+    }
+
     /// The group of sessions in which the candidate explains most.
     fn best_group(&self, contrast: &Test) -> Option<Tested> {
         // What is common to all sessions is projected out of a mechanism that needs some of them as a reference.
@@ -325,8 +331,11 @@ impl CandidateTests<'_> {
         let reference = against(self.base);
         let mut parts = groups(contrast, self.sessions, self.columns.len());
         parts.retain(|part| self.is_comparable_with_the_rest(part));
-        // Where nothing else decides, what differs is what changed since the first recording.
-        parts.sort_by_key(|part| self.evidence.runs.first().is_some_and(|r| part.contains(&r.session)));
+        // Where nothing else decides, what differs is what changed since the first recording; an actuator or its record fails for a while, and
+        // what most recordings show of it is sound.
+        let since = |part: &Vec<String>| self.evidence.runs.first().is_some_and(|r| part.contains(&r.session));
+        let fails = self.candidate.mechanism.kind == Kind::Actuator;
+        parts.sort_by_key(|part| (fails && self.is_most(part), since(part)));
         let in_group = |group: Vec<String>| {
             let test = self.evidence.test_in(&reference, self.columns, &named(&group));
             self.tested(Extent::In(group), test, 1.0)

@@ -136,6 +136,10 @@ fn withdrawn_because(f: &Finding) -> &'static str {
              explain them as well"
         }
         Grade::Unstable => "most repetitions on transformed recordings do not find it",
+        // The region of several sizes together is wider than the interval of each, and a size may move as the model is written.
+        Grade::Undetermined if f.parameters.iter().any(|p| p.ci95[0] > 0.0 || p.ci95[1] < 0.0) => {
+            "its size is hardly determined: the region that all its uncertain sizes share contains zero"
+        }
         Grade::Undetermined => "the interval of its size contains zero",
         Grade::Confirmed | Grade::Suspected => "the model does not follow the recordings without it or with it",
     }
