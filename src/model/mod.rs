@@ -860,8 +860,11 @@ impl Model {
         let hull = self.hull_coefficients();
         let hull_is_free = !hull.is_empty() && hull.iter().all(|i| self.parameters[*i].free && as_default(*i));
         let mut parameters = BTreeMap::new();
+        let from_ship = self.ship.given_parameters();
         for (i, p) in self.parameters.iter().enumerate() {
-            let default = self.start(p.info);
+            // What a reader begins with: the ship file's own value, or that of the form.
+            let given = from_ship.get(&p.name).copied().filter(|_| !self.replaced(p.info));
+            let default = given.unwrap_or_else(|| self.start(p.info));
             let with_hull = hull_is_free && hull.contains(&i);
             let prior_frees = as_default(i) || with_hull;
             let free_by_default = self.free_at_first(&p.name) || prior_frees;
