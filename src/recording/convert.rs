@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 /// Rows over which a channel is derived when the map gives no span.
-const DERIVE_ROWS: f64 = 8.0;
+pub(super) const DERIVE_ROWS: f64 = 8.0;
 
 /// Velocity pairs that change frame and reference point together.
 const VELOCITIES: [[Channel; 2]; 2] = [[Channel::U, Channel::V], [Channel::UWater, Channel::VWater]];
@@ -73,7 +73,7 @@ impl Recording {
             unwrap(angle);
         }
         if let Some(psi) = self.data.get_mut(&Channel::Psi).filter(|_| map.wrap_repair) {
-            self.repaired = repair(&t, psi);
+            self.repaired = repair(&t, psi, |_, _| None);
         }
         self.shift(&map.delays(session))?;
         let span = map.derive_span.unwrap_or(DERIVE_ROWS * self.step());

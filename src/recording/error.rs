@@ -228,8 +228,8 @@ pub enum RecordingError {
         /// Next step.
         next: String,
     },
-    /// No stretch of the run is as long as a window.
-    #[error("{path}:{line}: the longest unbroken stretch lasts {have:.2} s, shorter than a window of {need:.2} s; set a shorter `window` in the study, or leave the run out", path = path.display())]
+    /// No stretch of the run is as long as a window, or as the fewest steps where the study gives no window.
+    #[error("{path}:{line}: the longest unbroken stretch lasts {have:.2} s, shorter than {least} {need:.2} s; set a shorter `{key}` in the study, or leave the run out", path = path.display())]
     TooShort {
         /// The file.
         path: PathBuf,
@@ -237,8 +237,12 @@ pub enum RecordingError {
         line: usize,
         /// Its length \[s\].
         have: f64,
-        /// Window length \[s\].
+        /// Length that is needed \[s\].
         need: f64,
+        /// Of what: `a window of`.
+        least: &'static str,
+        /// The key of the study that sets it.
+        key: &'static str,
     },
     /// A setting of the windows that cannot be.
     #[error("{path}: {message}", path = path.display())]

@@ -182,7 +182,7 @@ impl Recording {
         let mut right = self.clone();
         let t = self.time().to_vec();
         if let Some(psi) = right.data.get_mut(&Channel::Psi) {
-            right.repaired = repair(&t, psi);
+            right.repaired = repair(&t, psi, |_, _| None);
         }
         right
     }

@@ -178,7 +178,8 @@ impl Recording {
         if result.windows.is_empty() {
             let (have, line) = longest.unwrap_or((0.0, self.line(0)));
             let need = grid.window.unwrap_or(MIN_STEPS) as f64 * grid.step;
-            return Err(RecordingError::TooShort { path: self.path.clone(), line, have, need });
+            let (least, key) = if grid.window.is_some() { ("a window of", "window") } else { ("two steps,", "step") };
+            return Err(RecordingError::TooShort { path: self.path.clone(), line, have, need, least, key });
         }
         Ok(result)
     }

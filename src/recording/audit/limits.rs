@@ -27,6 +27,10 @@ pub const FEW_SHARE_APART: f64 = 0.05;
 pub const LOST_SAME: f64 = 0.5;
 /// A rudder that is off by less \[rad\], 1 deg, in one row moves no ship: so much is noise and rounding of a rudder at rest.
 pub const RUDDER_BLIP: f64 = 1.0 * std::f64::consts::PI / 180.0;
+/// A step that goes on from one beside it, to the same side and at most so many times as far, is no leap to a single value.
+pub const GOES_ON: f64 = 3.0;
+/// A heading that is off by less \[rad\], 0.5 deg, in one row is noise, or a digit of a compass whose other rows agree to the last one.
+pub const HEADING_BLIP: f64 = 0.5 * std::f64::consts::PI / 180.0;
 /// A rudder up to this angle \[rad\], 45 deg, at an end of a run is one on its way over: runs are cut where an order is given.
 pub const RUDDER_OVER: f64 = 45.0 * std::f64::consts::PI / 180.0;
 /// Windows from which the scatter at the ends of a run is estimated; of longer runs every n-th is taken.
@@ -183,6 +187,8 @@ pub const GEAR_REACHED: f64 = 0.9;
 pub const GEAR_BEYOND: f64 = 1.25;
 /// Longest time between two rows that are one step, in usual steps.
 pub const GEAR_STEP: f64 = 1.5;
+/// A leap that counts is more than this share of the largest value of the channel.
+pub const GEAR_SHARE: f64 = 0.05;
 
 // --- Clocks ---
 
@@ -210,6 +216,8 @@ pub const POOLED_AGREED: f64 = 10.0;
 /// and at most this share of the squares is left. Of 1094 sound runs (27 concealed cases, seeds 8101 to 8129, and one of 14 runs) the least
 /// share for a lag of two rows or more was 0.44, and for the other side 0.83.
 pub const POOLED_LEAVES: f64 = 0.4;
+/// Evidence with which a run shows by itself that a channel acts to its own side, two standard errors: the other runs do not say otherwise then.
+pub const OWN_SIDE: f64 = 4.0;
 /// A channel that is less than this share, squared and by window, of what it is in the run in which it moves most rests, but for rounding.
 pub const POOLED_STILL: f64 = 1e-9;
 /// Runs in which a channel is this many times as large, squared and by window, as in the middle one do not count among the others.
@@ -269,6 +277,9 @@ pub const RECKONED_EVIDENCE: f64 = 15.0;
 pub const RECKONED_UNLIKE: f64 = 25.0;
 /// and this share of the ship's length, root mean square: recordings without noise differ by how they are integrated.
 pub const RECKONED_LENGTH: f64 = 0.05;
+/// A ship whose propeller stands still loses speed: one that sails more lengths than the first and has at least the second share of its speed
+/// left is driven. A full tanker coasts its length for a loss of a twentieth.
+pub const KEEPS_SPEED: (f64, f64) = (4.0, 0.9);
 /// A propeller of the wrong sign: it turns astern in at least this share of the rows,
 pub const ASTERN_SHARE: f64 = 0.9;
 /// and in the last third of them the ship still sails ahead at this share of its speed in the first.

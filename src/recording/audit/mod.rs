@@ -162,6 +162,20 @@ mod tests {
         let ratio = propeller::advance_ratio(&windmilling, &ship).unwrap();
         assert!((0.2..1.6).contains(&ratio), "{ratio}");
         assert!(!propeller::is_unpowered(&windmilling, &ship) && propeller::is_unpowered(&with(&|_| 0.0), &ship));
+        // The noise of a stopped one, which is positive in half of the rows.
+        assert_eq!(propeller::advance_ratio(&with(&|i| 2e-4 * (0.7 * i as f64).sin()), &ship), None);
+    }
+
+    #[test]
+    fn a_ship_that_keeps_its_speed_is_driven_and_one_that_coasts_loses_it() {
+        let ship = Ship::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/ships/a.toml")).unwrap();
+        let sailing = |speed: &dyn Fn(f64) -> f64| {
+            let t: Vec<f64> = (0..600).map(f64::from).collect();
+            let u = t.iter().map(|t| speed(*t)).collect();
+            Recording::from_channels("run", [(Channel::T, t), (Channel::U, u)].into_iter().collect()).unwrap()
+        };
+        assert!(propeller::keeps_speed(&sailing(&|_| 5.0), &ship));
+        assert!(!propeller::keeps_speed(&sailing(&|t| 5.0 / (1.0 + t / 200.0)), &ship));
     }
 
     /// A turn under a nearly constant rudder: the yaw rate answers once, and then follows from nothing that changes.

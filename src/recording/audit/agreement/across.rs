@@ -1,7 +1,7 @@
 //! What only a comparison of runs shows: clocks that differ, one run in another unit, the same data on both sides of the split.
 //! The evidence of each run is gathered where the run is audited; no recording is read here.
 
-use super::propeller::{advance, advance_ratio, is_unpowered, unpowered};
+use super::propeller::{advance, advance_ratio, is_unpowered, keeps_speed, sails_on, unpowered};
 use super::reckoning::{Reckoned, reckoned};
 use super::scales::scales;
 use super::scatter::{Scatter, scatters};
@@ -61,6 +61,8 @@ pub struct Evidence {
     track_told: bool,
     /// Whether its propeller never turns though it sails.
     unpowered: bool,
+    /// Whether it keeps its speed over several lengths.
+    keeps_speed: bool,
     /// The largest leap of the rudder.
     leap: Option<Leap>,
     /// The fastest change of rudder and propeller.
@@ -107,6 +109,7 @@ impl Evidence {
                 i.severity > Severity::Note && i.fault != "lever" && i.channel.is_some_and(|c| TRACK.contains(&c))
             }),
             unpowered: is_unpowered(recording, ship),
+            keeps_speed: keeps_speed(recording, ship),
             leap: Leap::of(recording),
             fastest: ACTUATORS.map(|channel| Fastest::of(recording, channel)),
             scatter: Scatter::of(recording),
@@ -203,6 +206,9 @@ pub fn across(runs: &[Evidence], ship: &Ship) -> Vec<Shared> {
     let every = || runs.iter().map(|r| r.run.clone()).collect::<Vec<_>>();
     if !runs.is_empty() && runs.iter().all(|r| r.unpowered) {
         found.push(Shared { runs: every(), issue: unpowered() });
+    } else {
+        let keeps = |r: &&Evidence| r.unpowered && r.keeps_speed;
+        found.extend(runs.iter().filter(keeps).map(|r| Shared { runs: vec![r.run.clone()], issue: sails_on() }));
     }
     found.extend(ordered(&leaps, time).map(|issue| Shared { runs: every(), issue }));
     let responses: Vec<(&str, &Responses)> = runs.iter().map(|r| (r.run.as_str(), &r.responses)).collect();
@@ -386,7 +392,9 @@ fn evident(curve: &Curve) -> bool {
 /// Channels that are late or early in all runs together, and rudder and propeller in those runs that differ from that; the lag of sensors
 /// in single runs is reported by the audit of each run.
 fn late(runs: &[Evidence], sources: &Sources, pair: &Pair, time: f64) -> Vec<Shared> {
-    let beyond = |seconds: f64, share: f64, step: f64| seconds.abs() > (share * time).max(LAG_STEPS[0] * step);
+    let blur = runs.iter().filter_map(|r| pair.curve(r)).map(|c| c.blur).fold(0.0, f64::max);
+    let beyond =
+        |seconds: f64, share: f64, step: f64| seconds.abs() > (share * time).max(LAG_STEPS[0] * step).max(blur);
     let excused = |seconds: f64| pair.excused[usize::from(seconds < 0.0)];
     // An actuator of the wrong sign, or of a motion of the wrong sign, cannot be distinguished from one that is late by half a period.
     let sound = |r: &&Evidence| !r.turned.iter().any(|c| [pair.channel, Channel::R, Channel::U].contains(c));

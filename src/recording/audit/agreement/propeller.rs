@@ -3,7 +3,9 @@
 
 use crate::numerals::sig;
 use crate::recording::audit::issue::{Issue, Severity};
-use crate::recording::audit::limits::{POWERED, RATIO_APART, RATIO_INSIDE, RATIO_SAMPLES, SAILED, UNDER_WAY};
+use crate::recording::audit::limits::{
+    KEEPS_SPEED, POWERED, RATIO_APART, RATIO_INSIDE, RATIO_SAMPLES, SAILED, UNDER_WAY,
+};
 use crate::recording::{Channel, Recording};
 use crate::ship::Ship;
 use crate::statistics::median;
@@ -17,14 +19,16 @@ const UNITS: [(f64, &str); 4] = [
     (1.0 / 60.0, "the column is in rps and was declared rpm"),
 ];
 
-/// The median advance ratio where the ship sails ahead under power; `None` where it does too seldom.
+/// The median advance ratio where the ship sails ahead under power; `None` where it does too seldom. A ratio beyond what the wrongest unit makes
+/// of a propeller that drives its ship is that of a stopped one, whose record is noise.
 pub fn advance_ratio(recording: &Recording, ship: &Ship) -> Option<f64> {
     let (n, u) = recording.get(Channel::N).zip(recording.get(Channel::U))?;
     let slow = ship.small_speed();
     let fastest = n.iter().copied().filter(|n| n.is_finite()).fold(0.0, f64::max);
     let ahead = n.iter().zip(u).filter(|(n, u)| **n > POWERED * fastest && **u > UNDER_WAY * slow);
     let ratios: Vec<f64> = ahead.map(|(n, u)| u / (n * ship.propeller.diameter)).collect();
-    if ratios.len() < RATIO_SAMPLES { None } else { median(ratios) }
+    let largest = SAILED[1] * UNITS.iter().map(|(factor, _)| factor.max(factor.recip())).fold(1.0, f64::max);
+    median(ratios.iter().copied()).filter(|ratio| ratios.len() >= RATIO_SAMPLES && *ratio <= largest)
 }
 
 /// Compares the ratios of all runs with those that ships have, and each with the others: a berthing is no voyage, so that one run
@@ -70,5 +74,22 @@ pub fn is_unpowered(recording: &Recording, ship: &Ship) -> bool {
 pub fn unpowered() -> Issue {
     let text = "the propeller never turns in any run, and the ship sails";
     let next = "map the column of the propeller rate, or give a measured one (`trimtab help columns`): without it a fit takes the ship to be coasting";
+    Issue::new(Severity::Warning, "unpowered", text, next).of(Channel::N)
+}
+
+/// Whether a ship sails several lengths and keeps its speed to their end: the mean of the last third of the rows against that of the first.
+pub fn keeps_speed(recording: &Recording, ship: &Ship) -> bool {
+    let Some(u) = recording.get(Channel::U) else { return false };
+    let third = u.len() / 3;
+    let mean = |rows: &[f64]| rows.iter().sum::<f64>() / rows.len().max(1) as f64;
+    let (first, last) = (mean(&u[..third]), mean(&u[u.len() - third..]));
+    let lengths = mean(u) * recording.duration() / ship.hull.lpp;
+    lengths > KEEPS_SPEED.0 && last > KEEPS_SPEED.1 * first
+}
+
+/// The doubt about a run whose propeller stands still while the ship keeps its speed.
+pub fn sails_on() -> Issue {
+    let text = "the propeller stands still all through the run, and the ship keeps its speed";
+    let next = "is its rate missing there? leave the fields blank or the run out: a fit takes the ship to be coasting";
     Issue::new(Severity::Warning, "unpowered", text, next).of(Channel::N)
 }

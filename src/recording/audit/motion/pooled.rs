@@ -5,8 +5,8 @@ use super::response::Curve;
 use super::sources::Sources;
 use super::sums::Sums;
 use crate::recording::audit::limits::{
-    EXPLAINS, POOLED_AGREED, POOLED_EVIDENCE, POOLED_LEAVES, POOLED_RUNS, POOLED_SIZE, POOLED_STILL, POOLED_UNUSUAL,
-    SCALE_EVIDENCE,
+    EXPLAINS, OWN_SIDE, POOLED_AGREED, POOLED_EVIDENCE, POOLED_LEAVES, POOLED_RUNS, POOLED_SIZE, POOLED_STILL,
+    POOLED_UNUSUAL, SCALE_EVIDENCE,
 };
 use crate::statistics::median;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -138,12 +138,9 @@ pub(in crate::recording::audit) fn odd(
     let judged = |run: usize| {
         let curve = alike(run)?;
         let others = pool.others(curve)?;
-        let unanswered = || {
-            let usual = usual?;
-            let unsure = pool.unsure(curve, usual)?;
-            is_unanswered(curve, &others, usual, unsure).then_some(Odd::Unanswered)
-        };
-        let found = judged(curve, &others, &worth).or_else(unanswered)?;
+        let expected = usual.and_then(|usual| Some(usual * curve.rows + pool.unsure(curve, usual)?));
+        let unanswered = || is_unanswered(curve, &others, expected?).then_some(Odd::Unanswered);
+        let found = judged(curve, &others, expected.unwrap_or(0.0), &worth).or_else(unanswered)?;
         sources.agree(run, |other| losses(alike(other)?, &others, found)).then_some(found)
     };
     (0..curves.len()).map(judged).collect()
@@ -184,22 +181,22 @@ pub(in crate::recording::audit) fn shares_at_best(curves: &[Option<&Curve>], poo
 }
 
 /// Whether a run by itself shows no effect of the channel, and is explained better without it than with its effect in the other runs,
-/// which leaves more than usual. `usual` is what is left of a window, `unsure` the squares by which the effect in the others is not known.
-fn is_unanswered(curve: &Curve, others: &[f64], usual: f64, unsure: f64) -> bool {
+/// which leaves more than is expected of a sound run.
+fn is_unanswered(curve: &Curve, others: &[f64], expected: f64) -> bool {
     let sums = curve.at_zero();
     let (as_it_is, nothing) = (sums.left(others), sums.left_without(curve.own, others));
-    let usual = usual * curve.rows + unsure;
-    let evidence = curve.samples * (as_it_is - nothing) / nothing.max(usual);
-    curve.side().abs() < POOLED_EVIDENCE && as_it_is > POOLED_UNUSUAL * usual && evidence > SCALE_EVIDENCE
+    let evidence = curve.samples * (as_it_is - nothing) / nothing.max(expected);
+    curve.side().abs() < POOLED_EVIDENCE && as_it_is > POOLED_UNUSUAL * expected && evidence > SCALE_EVIDENCE
 }
 
 /// What is odd in a run, given the coefficients of the others: the explanation with the most evidence, over the windows that it shares with
-/// the run as it is.
-fn judged(curve: &Curve, others: &[f64], worth: &impl Fn(f64) -> bool) -> Option<Odd> {
+/// the run as it is. To the other side acts only what leaves more than is `expected` of a sound run: what is usually left of one, and the
+/// error of the others' coefficients.
+fn judged(curve: &Curve, others: &[f64], expected: f64, worth: &impl Fn(f64) -> bool) -> Option<Odd> {
     let turned = to_the_other_side(curve, others);
     let zero = curve.zero();
-    // A run that shows by itself to which side the channel acts is not judged by the others.
-    let own_side = curve.side() > POOLED_EVIDENCE;
+    // A run that shows by itself to which side the channel acts is not judged by the others, and neither is one that is as usual.
+    let of_side = curve.side() <= OWN_SIDE && curve.at_zero().left(others) > POOLED_UNUSUAL * expected;
     let mut best: Option<(f64, Odd)> = None;
     for (place, sums) in curve.sums.iter().enumerate() {
         let seconds = curve.seconds(place);
@@ -208,7 +205,7 @@ fn judged(curve: &Curve, others: &[f64], worth: &impl Fn(f64) -> bool) -> Option
         let (before, nothing) = (as_it_is.left(others), as_it_is.left_without(curve.own, others));
         let candidates = [
             (worth(seconds) && inside).then(|| (sums.left(others), Odd::Late(seconds))),
-            (place == zero && !own_side).then(|| (sums.left(&turned), Odd::Turned)),
+            (place == zero && of_side).then(|| (sums.left(&turned), Odd::Turned)),
         ];
         for (left, what) in candidates.into_iter().flatten() {
             let evidence = curve.samples * (before - left) / left.max(f64::MIN_POSITIVE);
@@ -247,6 +244,7 @@ mod tests {
             sums: vec![sums],
             own: 1,
             plateaus: Vec::new(),
+            blur: 0.0,
         }
     }
 
@@ -335,7 +333,7 @@ mod tests {
 
     #[test]
     fn a_run_that_shows_its_own_side_is_not_turned_by_what_the_others_say() {
-        let judged = |sign: f64| judged(&run(sign), &[-0.8], &|_| false);
+        let judged = |sign: f64| judged(&run(sign), &[-0.8], 0.0, &|_| false);
         assert_eq!((judged(-1.0), judged(1.0)), (Some(Odd::Turned), None));
     }
 }

@@ -6,6 +6,7 @@ use super::series::{Series, mean_square};
 use super::sums::{Gathered, Sums};
 use crate::recording::Channel;
 use crate::recording::audit::limits::{LAG_LONGEST, RESPONSE_STEPS};
+use crate::recording::convert::DERIVE_ROWS;
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -35,6 +36,9 @@ pub struct Curve {
     pub own: usize,
     /// Stretches over which a rudder or a propeller keeps one value.
     pub plateaus: Vec<Plateau>,
+    /// Half of the time over which the motion was smoothed to derive it \[s\]; 0 where it was recorded. It seems to begin so much before what
+    /// moves it.
+    pub blur: f64,
 }
 
 /// A regression at one lag: what is left, the sign of the effect.
@@ -161,6 +165,12 @@ pub fn rudder(series: &Series<'_>) -> Option<Curve> {
             over(r),
         )]
     })
+    .map(|curve| Curve { blur: blur(series, Channel::R), ..curve })
+}
+
+/// Half of the time over which a channel of the motion was smoothed \[s\], as a column map derives it that gives no span.
+fn blur(series: &Series<'_>, channel: Channel) -> f64 {
+    if series.recorded(channel).is_some() { 0.0 } else { 0.5 * DERIVE_ROWS * series.step }
 }
 
 /// The propeller against the surge: `du/dt = a n|n| + b n + c u + d u|u| + e v r + f delta^2 + g`, integrated over some steps.
@@ -196,6 +206,7 @@ pub fn propeller(series: &Series<'_>) -> Option<Curve> {
             )]
         },
     )
+    .map(|curve| Curve { blur: blur(series, Channel::U), ..curve })
 }
 
 /// The sway against the turn: `v = a r + b r|r| + c u r + d delta + e delta n|n| + f`, the mean over some steps in which the ship sails
@@ -308,7 +319,8 @@ fn curve<const N: usize, const P: usize, const E: usize>(
     let beside = [before.sums, after.sums];
     let of_windows = |starts: &[usize]| Some(Gathered::new(starts, 0, &equations)?.whole());
     let plateaus = actuator.map_or_else(Vec::new, |values| plateaus(series, values, &whole, steps, of_windows));
-    Some(Curve { step: series.step, lags, left, sign, without, samples, rows, sums, beside, own: P, plateaus })
+    let step = series.step;
+    Some(Curve { step, lags, left, sign, without, samples, rows, sums, beside, own: P, plateaus, blur: 0.0 })
 }
 
 /// Correlation of the residuals of successive windows of some steps, of so many equations each: they are worth as many independent ones as it leaves.

@@ -6,6 +6,7 @@ use crate::recording::audit::issue::{Issue, Severity};
 use crate::recording::audit::limits::{
     FASTEST, FIX_FAR, FIX_OPPOSITE, FIX_SHARE, FIX_SPEED, RESOLUTION_CHANGES, RESOLUTIONS,
 };
+use crate::recording::audit::motion::response::integral;
 use crate::recording::{Channel, Recording, across_the_wrap};
 use crate::statistics::{median, quantile};
 
@@ -128,7 +129,11 @@ fn fastest(recording: &Recording, steps: &[Step]) -> Option<f64> {
 /// Headings that were interpolated across north; true where there are some.
 pub fn headings(recording: &Recording, issues: &mut Vec<Issue>) -> bool {
     let recorded = recording.get(Channel::Psi).filter(|_| !recording.derived().contains(&Channel::Psi));
-    let found = recorded.map(across_the_wrap).unwrap_or_default();
+    // What the yaw rate adds up to.
+    let rate = recording.get(Channel::R).filter(|_| !recording.derived().contains(&Channel::R));
+    let turned = rate.map(|r| integral(recording.time(), |i| r[i]));
+    let turned = |from: usize, to: usize| turned.as_ref().map(|sum| sum[to] - sum[from]);
+    let found = recorded.map(|psi| across_the_wrap(recording.time(), psi, turned)).unwrap_or_default();
     let (Some(first), Some(last)) = (found.first(), found.last()) else { return false };
     let rows: usize = found.iter().map(ExactSizeIterator::len).sum();
     let text = format!("{rows} values between 359 and 1 deg were interpolated the wrong way round, through 180 deg");

@@ -3,7 +3,7 @@
 
 use crate::numerals::sig;
 use crate::recording::audit::issue::{Issue, Severity, Shared};
-use crate::recording::audit::limits::{GEAR_BEYOND, GEAR_REACHED, GEAR_RUNS, GEAR_STEP};
+use crate::recording::audit::limits::{GEAR_BEYOND, GEAR_REACHED, GEAR_RUNS, GEAR_SHARE, GEAR_STEP};
 use crate::recording::{Channel, Recording};
 use serde::{Deserialize, Serialize};
 
@@ -21,6 +21,8 @@ pub struct Fastest {
     seconds: f64,
     /// Size of the mean rate, in SI units.
     rate: f64,
+    /// The largest value of the channel in the recording, in the unit of the file.
+    largest: f64,
     /// Lines of the two rows.
     lines: (usize, usize),
 }
@@ -31,10 +33,18 @@ impl Fastest {
         let (t, values) = (recording.time(), recording.get(channel)?);
         let unit = recording.unit(channel);
         let factor = channel.info().quantity.factor(unit).unwrap_or(1.0);
+        let largest = values.iter().filter(|v| v.is_finite()).fold(0.0, |m: f64, v| m.max(v.abs())) / factor;
         let between = |row: usize| {
             let (change, seconds) = (values[row] - values[row - 1], t[row] - t[row - 1]);
             let lines = (recording.line(row - 1), recording.line(row));
-            Self { change: change / factor, unit: unit.to_owned(), seconds, rate: (change / seconds).abs(), lines }
+            Self {
+                change: change / factor,
+                unit: unit.to_owned(),
+                seconds,
+                rate: (change / seconds).abs(),
+                largest,
+                lines,
+            }
         };
         let whole = |one: &Self| one.rate > 0.0 && one.seconds > 0.0 && one.seconds < GEAR_STEP * recording.step();
         let rows = recording.segments().into_iter().flat_map(|s| s.start + 1..s.end);
@@ -44,8 +54,10 @@ impl Fastest {
 
 /// The runs in which a channel leaps beyond the limit that it reaches in the others.
 pub fn leaps(channel: Channel, runs: &[(&str, Option<&Fastest>)]) -> Vec<Shared> {
+    // The noise of a channel that rests is no gear.
+    let largest = runs.iter().filter_map(|(_, f)| Some((*f)?.largest)).fold(0.0, f64::max);
     let one = |(run, fastest): &(&str, Option<&Fastest>)| {
-        let fastest = (*fastest)?;
+        let fastest = (*fastest).filter(|f| f.change.abs() > GEAR_SHARE * largest)?;
         let others: Vec<f64> =
             runs.iter().filter(|(other, _)| other != run).filter_map(|(_, f)| Some((*f)?.rate)).collect();
         let limit = others.iter().copied().fold(0.0, f64::max);

@@ -3,8 +3,8 @@
 
 use crate::recording::audit::issue::{Issue, Severity};
 use crate::recording::audit::limits::{
-    APART_SHARE, END_WINDOWS, FAR, FAR_SHARE, FAR_SHARE_AT_ENDS, FEW, FEW_SHARE, FEW_SHARE_APART, LOST_SAME,
-    MEDIAN_ROWS, OUTSIDE_SHARE, RUDDER_BLIP, RUDDER_OVER, TAIL,
+    APART_SHARE, END_WINDOWS, FAR, FAR_SHARE, FAR_SHARE_AT_ENDS, FEW, FEW_SHARE, FEW_SHARE_APART, GOES_ON,
+    HEADING_BLIP, LOST_SAME, MEDIAN_ROWS, OUTSIDE_SHARE, RUDDER_BLIP, RUDDER_OVER, TAIL,
 };
 use crate::recording::{Channel, Recording, STATE_CHANNELS};
 use crate::statistics::median;
@@ -67,7 +67,11 @@ fn far(channel: Channel, t: &[f64], values: &[f64], set: bool) -> Vec<usize> {
     let range = if set { (high - low).max(high.abs().max(low.abs())) } else { high - low };
     // The usual scatter, or a share of the range, since data without noise have none.
     let rudder = matches!(channel, Channel::Delta | Channel::DeltaOrder);
-    let least = if rudder { RUDDER_BLIP / APART_SHARE } else { 0.0 };
+    let least = match channel {
+        Channel::Delta | Channel::DeltaOrder => RUDDER_BLIP / APART_SHARE,
+        Channel::Psi => HEADING_BLIP / APART_SHARE,
+        _ => 0.0,
+    };
     let usual = (FAR * deviation(from_median.iter().copied())).max(FAR_SHARE * range).max(least);
     // The range of what is set: of values that do not stand alone.
     let near = FAR_SHARE * (sorted[sorted.len() - 1] - sorted[0]);
@@ -84,7 +88,7 @@ fn far(channel: Channel, t: &[f64], values: &[f64], set: bool) -> Vec<usize> {
     let apart = impossible.iter().all(beside);
     // A set channel may have been changed just before the end.
     if !set {
-        let at_ends = |scatter: f64| (FAR * scatter).max(FAR_SHARE_AT_ENDS * (high - low));
+        let at_ends = |scatter: f64| (FAR * scatter).max(FAR_SHARE_AT_ENDS * (high - low)).max(least);
         far.extend(far_at_ends(t, &rows, &finite, at_ends));
         far.sort_unstable();
     }
@@ -95,9 +99,23 @@ fn far(channel: Channel, t: &[f64], values: &[f64], set: bool) -> Vec<usize> {
         far.extend(lost(&finite, usual).filter(|k| !far.contains(k)).collect::<Vec<_>>());
         far.sort_unstable();
     }
+    far.retain(|k| !is_on_its_way(&finite, *k));
     let share = if apart { FEW_SHARE_APART } else { FEW_SHARE };
     let few = FEW.max((share * finite.len() as f64) as usize);
     if far.len() > few { Vec::new() } else { far.into_iter().map(|k| rows[k]).collect() }
+}
+
+/// Whether the step to a row goes on from the one before it, or the step from it is gone on with: to the same side, and at most so many times as far: the last step of a rudder is a part of one.
+/// A rudder that is put over for a moment, and a heading as a turn begins, are far from the median of their neighbours and no single values.
+fn is_on_its_way(values: &[f64], k: usize) -> bool {
+    let goes_on = |[before, at, after]: [Option<usize>; 3]| {
+        let value = |row: Option<usize>| values.get(row?).copied();
+        let (Some(before), Some(at), Some(after)) = (value(before), value(at), value(after)) else { return false };
+        let (first, second) = (at - before, after - at);
+        first * second > 0.0 && second.abs() <= GOES_ON * first.abs()
+    };
+    let back = |rows: usize| k.checked_sub(rows);
+    goes_on([back(2), back(1), Some(k)]) || goes_on([Some(k + 2), Some(k + 1), Some(k)])
 }
 
 /// Single zeros of a channel that is set, between values of one sign and about one size: orders do not come back to where they were.
@@ -230,6 +248,20 @@ mod tests {
         assert!(found(Channel::Delta, rests, |d| d[0] = -0.0908).is_empty());
         assert_eq!(found(Channel::Delta, rests, |d| d[60] = 0.3), [60]);
         assert_eq!(found(Channel::Delta, rests, |d| d[120] = 1.2), [120]);
+    }
+
+    #[test]
+    fn what_is_on_its_way_is_no_single_value_and_one_digit_of_a_heading_is_none() {
+        // Put over by four degrees and back at the rate of its gear.
+        let checked = |i: usize| if (56..=60).contains(&i) { -0.04 * (3.0 - 58_usize.abs_diff(i) as f64) } else { 0.0 };
+        assert!(found(Channel::Delta, checked, |_| ()).is_empty());
+        assert_eq!(found(Channel::Delta, checked, |d| d[90] = 0.3), [90]);
+        // A turn that begins before the end of the run.
+        let turns = |i: usize| -3.05 + if i > 117 { 0.006 * ((i - 117) as f64).powi(2) } else { 2e-4 * (i % 3) as f64 };
+        assert!(found(Channel::Psi, turns, |_| ()).is_empty());
+        assert_eq!(found(Channel::Psi, |i| -3.05 + 2e-4 * (i % 3) as f64, |p| p[120] = -2.9), [120]);
+        let digits = |i: usize| if [4, 30, 77].contains(&i) { -0.8201 } else { -0.8236 };
+        assert!(found(Channel::Psi, digits, |_| ()).is_empty());
     }
 
     #[test]
