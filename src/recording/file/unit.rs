@@ -43,6 +43,13 @@ const DEGREE: f64 = TURN / 360.0;
 /// The international knot: 1852 m an hour.
 const KNOT: f64 = 1852.0 / 3600.0;
 
+/// A positive number as it stands before a unit: `0.1`, `1/100`.
+fn many(number: &str) -> Option<f64> {
+    let (over, under) = number.split_once('/').unwrap_or((number, "1"));
+    let many = over.parse::<f64>().ok()? / under.parse::<f64>().ok()?;
+    (many.is_finite() && many > 0.0).then_some(many)
+}
+
 const fn unit(quantity: Quantity, spellings: &'static [&'static str], factor: f64) -> Unit {
     Unit { quantity, spellings, factor }
 }
@@ -67,7 +74,24 @@ pub const UNITS: &[Unit] = &[
     unit(Quantity::Angle, &["rad", "radian", "radians"], 1.0),
     unit(
         Quantity::Angle,
-        &["deg", "degree", "degrees", "°", "degrees_north", "degrees_east", "degree_north", "degree_east"],
+        &[
+            "deg",
+            "degree",
+            "degrees",
+            "°",
+            "degrees_north",
+            "degrees_east",
+            "degree_north",
+            "degree_east",
+            "decimal degrees",
+            "grad",
+            "degré",
+            "degrés",
+            "grader",
+            "graden",
+            "gradi",
+            "grados",
+        ],
         DEGREE,
     ),
     unit(Quantity::Angle, &["mrad", "milliradian", "milliradians"], 1e-3),
@@ -82,6 +106,7 @@ pub const UNITS: &[Unit] = &[
         KNOT,
     ),
     unit(Quantity::Speed, &["km/h", "kmh", "kph", "kmph", "km/hr"], 1.0 / 3.6),
+    unit(Quantity::Speed, &["mph", "mi/h"], 1609.344 / 3600.0),
     unit(Quantity::Speed, &["m/min"], 1.0 / 60.0),
     unit(Quantity::Speed, &["cm/s", "cm/sec"], 0.01),
     unit(Quantity::Speed, &["mm/s", "mm/sec"], 0.001),
@@ -149,9 +174,15 @@ impl Quantity {
 
     /// SI value of one `spelling`, or `None` when no unit of this quantity is spelt so.
     ///
-    /// Spellings are compared as written first, then without regard to case.
+    /// Spellings are compared as written first, then without regard to case. A number before one counts how much of it is one: `0.01 deg`,
+    /// `1/100 deg`.
     pub fn factor(self, spelling: &str) -> Option<f64> {
         let spelling = spelling.trim();
+        if let Some((number, of)) = spelling.split_once(' ')
+            && let Some(many) = many(number)
+        {
+            return Some(many * self.factor(of)?);
+        }
         let exact = self.units().find(|u| u.spellings.contains(&spelling));
         exact
             .or_else(|| self.units().find(|u| u.spellings.iter().any(|s| s.eq_ignore_ascii_case(spelling))))

@@ -12,6 +12,7 @@ use super::rows::{Rows, rows};
 use super::signals::fills::take_out;
 use super::signals::held::release;
 use super::signals::log::{Clock, Log, Meaning, needed};
+use super::signals::signal::Signal;
 use crate::recording::wrap::repair;
 use crate::recording::{Channel, Driven};
 use std::collections::{BTreeMap, BTreeSet};
@@ -159,8 +160,19 @@ pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, 
 
 /// Puts a heading that a logger interpolated across north on the short way round, before velocities are turned by it.
 fn mend_heading(signals: &mut Signals) {
+    let rate = signals.by.get(&Meaning::Channel(Channel::R)).cloned();
+    let course = signals.by.get(&Meaning::Course).cloned();
     let Some(psi) = signals.by.get_mut(&Meaning::Channel(Channel::Psi)) else { return };
-    let mended = repair(&psi.t, &mut psi.v);
+    // How far the yaw rate says that the ship turned meanwhile, or the course that counts turns.
+    let turned = |t: &[f64]| {
+        let (from, to) = (*t.first()?, *t.last()?);
+        let by_course = |course: &Signal| course.at(to, course.step) - course.at(from, course.step);
+        let by_rate = |r: &Signal| t.windows(2).map(|t| r.at(0.5 * (t[0] + t[1]), r.step) * (t[1] - t[0])).sum::<f64>();
+        let known = [rate.as_ref().map(by_rate), course.as_ref().map(by_course)];
+        known.into_iter().flatten().find(|turned| turned.is_finite())
+    };
+    let times = psi.t.clone();
+    let mended = repair(&times, &mut psi.v, |from, to| turned(&times[from..=to]));
     if mended > 0 {
         signals.notes.push(format!(
             "heading: {mended} values lie on the wrong way round between two true ones, as where a logger interpolates across north; \
@@ -174,9 +186,8 @@ fn blank_fills(log: &mut Log, choices: &Choices) {
     for column in &mut log.columns {
         for (fill, count) in take_out(column, choices.meaning(column)) {
             let name = &column.name;
-            log.notes.push(format!(
-                "column `{name}` contains {fill} in {count} lines, far from all other values; taken as missing"
-            ));
+            let why = if fill == 0.0 { "between values that do not change" } else { "far from all other values" };
+            log.notes.push(format!("column `{name}` contains {fill} in {count} lines, {why}; taken as missing"));
         }
     }
 }
@@ -271,7 +282,8 @@ fn missing(chosen: &Chosen<'_>, signals: &Signals, logs: &[Log], driven: &Driven
         || (taken(&Meaning::Course) && taken(&Meaning::GroundSpeed))
         || (taken(&Meaning::VelocityNorth) && taken(&Meaning::VelocityEast));
     if !moves {
-        ask("position or velocity", "--column lat=NAME --column lon=NAME` or `--column cog=NAME --column sog=NAME");
+        let flags = "--column lat=NAME --column lon=NAME`, `--column x=NAME --column y=NAME` (north and east) or `--column cog=NAME --column sog=NAME";
+        ask("position or velocity", flags);
     }
     if asked.is_empty() {
         return Ok(());

@@ -5,10 +5,10 @@ use super::names::is_magnetic;
 use super::scale::{advice, clock};
 use crate::numerals::sig;
 use crate::recording::import::signals::log::{Column, Meaning};
-use crate::recording::import::signals::motion::{AGREE, MOST_RADIANS, Track, ratio, rudder_effect};
+use crate::recording::import::signals::motion::{AGREE, DirectionUnit, MOST_RADIANS, Track, ratio, rudder_effect};
 use crate::recording::import::signals::signal::{Signal, size_below};
 use crate::recording::{Channel, Quantity};
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// What a column was taken for.
 #[derive(Clone, Debug, PartialEq)]
@@ -139,8 +139,16 @@ pub fn direction(
     let top = largest(columns);
     let raw = |factor: f64| Signal::new(columns, factor, 0.0, true).0;
     let shown = Track::unit_of_direction(known.track.as_ref(), raw, top);
+    // A unit that the file states, and in which it goes with the track or has its size: milliradians, hundredths of a degree.
+    let goes =
+        |g: &&Given| agreement(g.factor, 1.0).map_or(top * g.factor < MOST_RADIANS, |[length, _]| length > AGREE);
+    let stated = given.filter(|g| g.by_user || (g.factor != 1.0 && Quantity::Angle.factor("deg") != Some(g.factor)));
+    let by_jumps = || jumps_by(columns, TAU).then_some(DirectionUnit { factor: 1.0, by_track: false });
+    let shown = shown.or_else(by_jumps);
     let (unit, factor, why) = match (given, shown) {
-        (Some(given), _) if given.by_user => (given.unit.as_str(), given.factor, String::new()),
+        (Some(given), _) if given.by_user || stated.filter(goes).is_some() => {
+            (given.unit.as_str(), given.factor, String::new())
+        }
         (_, Some(shown)) => {
             let (unit, words) = if shown.factor == 1.0 { ("rad", "radians") } else { ("deg", "degrees") };
             let by_track = if shown.by_track && (top <= MOST_RADIANS || shown.factor == 1.0) {
@@ -153,7 +161,8 @@ pub fn direction(
         (Some(given), None) => (given.unit.as_str(), given.factor, String::new()),
         (None, None) => return Err(ask(meaning, name, "deg or rad")),
     };
-    let agrees = given.is_some_and(|g| g.by_user || (g.factor / factor - 1.0).abs() < 1e-6);
+    let agrees =
+        given.is_some_and(|g| g.by_user || stated.filter(goes).is_some() || (g.factor / factor - 1.0).abs() < 1e-6);
     let mut verdict = match given {
         Some(given) if agrees => as_given(given, &why),
         given => by_data(unit, factor, why, given),
@@ -424,7 +433,21 @@ pub fn rotation(
     Ok(verdict)
 }
 
-/// Any other channel: its unit as given, degrees by size, or a plain number.
+/// No propeller turns faster \[rps\]: `trimtab help channels`.
+const FASTEST: f64 = 60.0;
+/// A jump by a whole turn is missed by at most this share of it.
+const OFF_TURN: f64 = 0.1;
+/// Jumps that show a unit.
+const TURNS: usize = 3;
+
+/// Whether a direction jumps by about so much, and never farther, where it passes the end of its range.
+fn jumps_by(columns: &[&Column], turn: f64) -> bool {
+    let steps = || columns.iter().flat_map(|c| c.v.windows(2)).map(|v| (v[1] - v[0]).abs());
+    let whole = |step: &f64| (step / turn - 1.0).abs() < OFF_TURN;
+    steps().filter(whole).count() >= TURNS && steps().all(|step| step <= turn)
+}
+
+/// Any other channel: its unit as given, degrees by size or by where they jump, rates by size, or a plain number.
 ///
 /// # Errors
 /// Why it is left out.
@@ -438,6 +461,11 @@ pub fn other(meaning: Meaning, columns: &[&Column], given: Option<&Given>) -> Re
     match quantity {
         Quantity::Angle if top > MOST_RADIANS => {
             Ok(by_data("deg", quantity.factor("deg").unwrap_or(1.0), format!("values up to {}", sig(top, 3)), None))
+        }
+        Quantity::Angle if jumps_by(columns, TAU) => Ok(by_data("rad", 1.0, "jumps by 2 pi".to_owned(), None)),
+        Quantity::Rotation if top > TAU * FASTEST => {
+            let per_minute = quantity.factor("rpm").unwrap_or(1.0);
+            Ok(by_data("rpm", per_minute, format!("rates up to {}", sig(top, 3)), None))
         }
         Quantity::Length => Ok(by_data("m", 1.0, "no unit is given: metres".to_owned(), None)),
         Quantity::Number if top <= 1.01 => Ok(by_data("-", 1.0, format!("values up to {}", sig(top, 3)), None)),

@@ -142,7 +142,10 @@ fn is_of_names(text: &str) -> bool {
         all.any(|of| of == word)
     };
     let known = |word: &str| {
-        word.chars().count() < 2 || lists.iter().any(|list| is_on(list, word)) || is_wind_word(word) || phrased(word)
+        (word.chars().count() < 2 && !word.contains(|c: char| c.is_ascii_digit()))
+            || lists.iter().any(|list| is_on(list, word))
+            || is_wind_word(word)
+            || phrased(word)
     };
     !text.contains(['/', '^', '%']) && words(text).iter().any(|word| known(unnumbered(word)))
 }
@@ -331,11 +334,14 @@ pub fn time_unit(name: &str) -> Option<&'static str> {
     parts.iter().all(beside).then_some(unit)
 }
 
-/// The columns of year, month, day, hour, minute and second among these names, each the first that is left.
-pub fn calendar<'a>(names: impl Iterator<Item = &'a str>) -> Option<[usize; 6]> {
+/// The columns of year, month, day, hour, minute and second among these names, each the first that is left; of `FROM` hour, minute and second
+/// alone where that is 3.
+pub fn calendar<'a, const FROM: usize, const COUNT: usize>(
+    names: impl Iterator<Item = &'a str>,
+) -> Option<[usize; COUNT]> {
     let names: Vec<Vec<String>> = names.map(words).collect();
-    let mut found = [usize::MAX; 6];
-    for (part, list) in CALENDAR.iter().enumerate() {
+    let mut found = [usize::MAX; COUNT];
+    for (part, list) in CALENDAR[FROM..].iter().enumerate().take(COUNT) {
         let is = |(i, name): &(usize, &Vec<String>)| {
             !found[..part].contains(i) && matches!(name.as_slice(), [word] if is_on(list, word))
         };
@@ -399,7 +405,7 @@ mod tests {
 
     #[test]
     fn a_time_in_several_columns_and_a_count_of_hours_or_days_are_known_by_their_names() {
-        let columns = |names: &'static str| calendar(names.split(' '));
+        let columns = |names: &'static str| calendar::<0, 6>(names.split(' '));
         assert_eq!(columns("YYYY MM DD hh mm ss lat lon"), Some([0, 1, 2, 3, 4, 5]));
         assert_eq!(columns("Year lat lon Month Day Hour Minute Second"), Some([0, 3, 4, 5, 6, 7]));
         assert_eq!((columns("year lat month day"), columns("m d h s lat lon min")), (None, None));

@@ -187,10 +187,19 @@ pub fn number(field: &str, decimal_comma: bool) -> Option<f64> {
     Some(if value.is_finite() { value } else { f64::NAN })
 }
 
+/// Whether points part a number into thousands: `1.400`, `-12.345.678`.
+fn groups_of_three(field: &str) -> bool {
+    let mut groups = field.trim_start_matches(['+', '-']).split('.');
+    let is_first = groups.next().is_some_and(|g| (1..=3).contains(&g.len()) && !g.starts_with('0'));
+    is_first && groups.all(|g| g.len() == 3 && g.bytes().all(|b| b.is_ascii_digit()))
+}
+
 /// A number with a point before its fraction and nothing between its thousands; `None` where marks do not part thousands.
 fn plain(field: &str, decimal_comma: bool) -> Option<Cow<'_, str>> {
     let part = |c: char| [',', ' ', '\u{a0}', '\u{202f}', '\''].contains(&c);
-    if !field.contains(part) {
+    // `1.400` beside `985,5` is a thousand and four hundred.
+    let pointed = decimal_comma && field.contains('.');
+    if !field.contains(part) && !pointed {
         return Some(Cow::Borrowed(field));
     }
     let (point, comma) = (field.rfind('.'), field.rfind(','));
@@ -198,6 +207,7 @@ fn plain(field: &str, decimal_comma: bool) -> Option<Cow<'_, str>> {
     let decimal = match (point, comma) {
         (Some(point), Some(comma)) => Some(point.max(comma)),
         (None, Some(comma)) if decimal_comma && field.matches(',').count() == 1 => Some(comma),
+        (Some(_), None) if pointed && groups_of_three(field) => None,
         (point, _) => point,
     };
     let (whole, fraction) = decimal.map_or((field, ""), |at| (&field[..at], &field[at + 1..]));

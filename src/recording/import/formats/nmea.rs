@@ -458,14 +458,18 @@ fn times(records: &[Record]) -> (Clock, Vec<Option<f64>>, &'static str) {
     (clock, within_epochs(records, &epochs), "that of RMC, GGA and ZDA; sentences without one follow the last")
 }
 
+/// A time between fixes that is longer than so many usual ones is a gap.
+const GAP: f64 = 2.5;
+
 /// The times of all records, given those of the records that have one. What comes several times between two of these is spread
-/// evenly: headings ten times a second are a tenth of a second apart.
+/// evenly: headings ten times a second are a tenth of a second apart. Before a gap nothing says whether a sentence is of its beginning or of
+/// its end, and none has a time but those that come all through it.
 fn within_epochs(records: &[Record], epochs: &[Option<f64>]) -> Vec<Option<f64>> {
     let kind = |r: &Record| kinds(r).next();
     // How often each kind comes in an epoch.
     let mut counts: BTreeMap<Kind, Vec<f64>> = BTreeMap::new();
     let mut now: BTreeMap<Kind, usize> = BTreeMap::new();
-    let (mut epoch, mut starts) = (None::<f64>, Vec::new());
+    let (mut epoch, mut starts) = (None::<f64>, Vec::<f64>::new());
     let next = |epoch: Option<f64>, t: &Option<f64>| t.filter(|t| epoch.is_none_or(|e| (e - t).abs() > 1e-3));
     for (r, t) in records.iter().zip(epochs) {
         if let Some(t) = next(epoch, t) {
@@ -484,10 +488,22 @@ fn within_epochs(records: &[Record], epochs: &[Option<f64>]) -> Vec<Option<f64>>
     let usual: BTreeMap<Kind, f64> = counts.into_iter().filter_map(|(k, c)| Some((k, median(c)?.max(1.0)))).collect();
     let mut times = Vec::with_capacity(records.len());
     let mut seen: BTreeMap<Kind, usize> = BTreeMap::new();
-    epoch = None;
-    for (r, t) in records.iter().zip(epochs) {
+    // Kinds that go on through a gap after this epoch; `None` without a gap.
+    let mut go_on: Option<Vec<Kind>> = None;
+    let (mut epoch, mut of_epoch) = (None, 0);
+    for (i, (r, t)) in records.iter().zip(epochs).enumerate() {
         if let Some(t) = next(epoch, t) {
-            epoch = Some(t);
+            let lasts = starts.get(of_epoch + 1).map_or(0.0, |after| after - t);
+            go_on = (lasts > GAP * step).then(|| {
+                let mut counts: BTreeMap<Kind, f64> = BTreeMap::new();
+                let until = |(_, other): &(&Record, &Option<f64>)| next(Some(t), other).is_none();
+                for kind in records[i..].iter().zip(&epochs[i..]).take_while(until).filter_map(|(r, _)| kind(r)) {
+                    *counts.entry(kind).or_default() += 1.0;
+                }
+                let fills = |kind: &Kind, count: f64| 2.0 * count * step / usual.get(kind).unwrap_or(&1.0) >= lasts;
+                counts.into_iter().filter(|(kind, count)| fills(kind, *count)).map(|(kind, _)| kind).collect()
+            });
+            (epoch, of_epoch) = (Some(t), of_epoch + 1);
             seen.clear();
         }
         let before = kind(r).map_or(0, |k| {
@@ -496,7 +512,8 @@ fn within_epochs(records: &[Record], epochs: &[Option<f64>]) -> Vec<Option<f64>>
             *count - 1
         });
         let apart = kind(r).and_then(|k| usual.get(&k)).map_or(step, |usual| step / usual);
-        times.push(if t.is_some() { *t } else { epoch.map(|e| e + before as f64 * apart) });
+        let known = go_on.as_ref().is_none_or(|kinds| kind(r).is_some_and(|k| kinds.contains(&k)));
+        times.push(if t.is_some() { *t } else { epoch.filter(|_| known).map(|e| e + before as f64 * apart) });
     }
     times
 }
@@ -572,6 +589,25 @@ mod tests {
         );
         assert!(log.notes[1].contains("broken"), "{:?}", log.notes);
         assert_eq!(log.columns[0].v.len(), 2);
+    }
+
+    #[test]
+    fn a_sentence_at_a_gap_has_no_time_and_those_that_come_all_through_it_have() {
+        let fix = |s: usize| summed(&format!("GPRMC,1000{s:02}.00,A,5412.000,N,01030.000,E,10.0,090.0,010524,,,A"));
+        let headings = |from: usize, count: usize| -> String {
+            (from..from + count).map(|i| summed(&format!("HEHDT,{i}.0,T"))).collect()
+        };
+        let until: String = (0..6).map(|s| fix(s) + &headings(5 * s, 5)).collect();
+        let times = |text: String| -> Vec<f64> {
+            let log = read(&text);
+            let of_heading = log.columns.into_iter().find(|c| c.name == "HDT heading").unwrap();
+            of_heading.t.iter().map(|t| t - of_heading.t[0]).collect()
+        };
+        // The first headings after the gap come before their fix.
+        let parted = times(until.clone() + &fix(6) + &headings(200, 5) + &fix(50) + &headings(205, 5) + &fix(51));
+        assert!(parted.len() == 35 && parted.iter().all(|t| *t < 6.0 || *t > 49.0), "{parted:?}");
+        let lost_fixes = times(until + &fix(6) + &headings(30, 100) + &fix(26) + &headings(130, 5) + &fix(27));
+        assert!(lost_fixes.len() == 135 && (lost_fixes[129] - 25.8).abs() < 0.01, "{lost_fixes:?}");
     }
 
     #[test]

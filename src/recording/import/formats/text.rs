@@ -207,6 +207,11 @@ fn table<'a>(path: &'a Path, text: &'a str, layout: &Layout, by_name: bool) -> R
         let fields = layout.fields(content);
         if header.as_ref() == Some(&fields) {
             repeated += 1;
+        } else if header.as_ref().is_some_and(|names| names_again(names, &fields)) {
+            let message = "a second line of column names, in another order: the logger was started anew with other columns; put what follows this \
+                           line, with it, into a file of its own, and import both"
+                .to_owned();
+            return Err(ImportError::At { path: path.to_owned(), line, column: 1, message });
         } else if fields.len() == names.len() {
             rows.push((line, fields));
         } else {
@@ -286,9 +291,15 @@ struct Times {
     how: String,
 }
 
+/// Whether the fields of a row are names of columns: half of them or more are those of the header.
+fn names_again(names: &[&str], fields: &[&str]) -> bool {
+    let is_name = |field: &&&str| !field.is_empty() && names.contains(*field) && number(field, false).is_none();
+    2 * fields.iter().filter(is_name).count() >= names.len().max(2)
+}
+
 /// Times whose year, month, day, hour, minute and second are in columns of their own.
 fn in_columns(table: &Table<'_>) -> Option<Times> {
-    let used = names::calendar(table.names.iter().map(|(name, _)| name.as_str()))?;
+    let used = names::calendar::<0, 6>(table.names.iter().map(|(name, _)| name.as_str()))?;
     let time = |(_, fields): &(usize, Vec<&str>)| {
         calendar(used.map(|f| number(fields[f], table.decimal_comma).unwrap_or(f64::NAN))).unwrap_or(f64::NAN)
     };
@@ -300,9 +311,40 @@ fn in_columns(table: &Table<'_>) -> Option<Times> {
     Some(Times { clock: Clock::Utc, t, used: used.to_vec(), how: format!("{named} (UTC)") })
 }
 
+/// Times of day whose hour, minute and second are in columns of their own, with the date of another column where there is one.
+fn of_day_in_columns(table: &Table<'_>) -> Option<Times> {
+    let parts = names::calendar::<3, 3>(table.names.iter().map(|(name, _)| name.as_str()))?;
+    let texts = |field: usize| table.rows.iter().map(move |(_, fields)| fields[field]);
+    let is_date = |f: &usize| !parts.contains(f) && texts(*f).find(|t| !t.is_empty()).is_some_and(is_date_alone);
+    let date = (0..table.names.len()).find(is_date);
+    let (order, unsure) = order(|| texts(date.unwrap_or(parts[0])));
+    let time = |(_, fields): &(usize, Vec<&str>)| {
+        let [hour, minute, second] = parts.map(|f| number(fields[f], table.decimal_comma).unwrap_or(f64::NAN));
+        let is_time = (0.0..24.0).contains(&hour) && (0.0..60.0).contains(&minute) && (0.0..61.0).contains(&second);
+        let day = date.map_or(Some(0.0), |date| date_time(fields[date], order));
+        day.filter(|_| is_time && hour.fract() == 0.0)
+            .map_or(f64::NAN, |day| day + 3600.0 * hour + 60.0 * minute + second)
+    };
+    let mut t: Vec<f64> = table.rows.iter().map(time).collect();
+    if 2 * t.iter().filter(|t| t.is_finite()).count() < t.len() {
+        return None;
+    }
+    let used: Vec<usize> = date.into_iter().chain(parts).collect();
+    let named: Vec<String> = used.iter().map(|f| format!("`{}`", table.names[*f].0)).collect();
+    let named = named.join(", ");
+    let (clock, how) = if date.is_some() {
+        (Clock::Utc, format!("{named} (UTC{unsure})"))
+    } else {
+        past_midnight(&mut t);
+        (Clock::Day, format!("{named}, a time of day without a date"))
+    };
+    Some(Times { clock, t, used, how })
+}
+
 /// The time of each row.
 fn times(table: &Table<'_>, choices: &Choices) -> Result<Times, ImportError> {
-    if let Some(times) = in_columns(table).filter(|_| !choices.columns.contains_key("t")) {
+    let in_columns = || in_columns(table).or_else(|| of_day_in_columns(table));
+    if let Some(times) = in_columns().filter(|_| !choices.columns.contains_key("t")) {
         return Ok(times);
     }
     let field = time_field(table, choices.columns.get("t").map(String::as_str))?;

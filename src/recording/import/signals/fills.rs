@@ -1,4 +1,4 @@
-//! Numbers that stand for a missing value: -999 amid rudder angles, 511 amid headings, 102.3 amid speeds.
+//! Numbers that stand for a missing value: -999 amid rudder angles, 511 amid headings, 102.3 amid speeds, 0 in every other row.
 //! They are taken out before any unit is determined from the values, and are reported.
 
 use super::log::{Column, Meaning};
@@ -12,6 +12,11 @@ const APART_USUAL: f64 = 1.0;
 /// A leap to 360 is no turn from this angle on \[deg\], and from so many usual steps.
 const LEAP: f64 = 10.0;
 const LEAPS: f64 = 10.0;
+/// A zero stands for a missing value where so often the column is at it for no longer than this time \[s\] and comes back to within this
+/// share of what it was: no rudder, engine or ship does.
+const RETURNS: usize = 8;
+const RETURNS_WITHIN: f64 = 2.5;
+const RETURNS_TO: f64 = 0.5;
 /// Kinds of fill values that one column may have.
 const KINDS: usize = 3;
 
@@ -19,9 +24,11 @@ const KINDS: usize = 3;
 pub fn take_out(column: &mut Column, meaning: Option<Meaning>) -> Vec<(f64, usize)> {
     let mut found = Vec::new();
     while found.len() < KINDS
-        && let Some(fill) = fill(&column.v, meaning).or_else(|| north_without_a_course(&column.v, meaning))
+        && let Some(fill) = fill(&column.v, meaning)
+            .or_else(|| north_without_a_course(&column.v, meaning))
+            .or_else(|| zero_between_rows(column, meaning).filter(|_| found.iter().all(|(fill, _)| *fill != 0.0)))
     {
-        let kept: Vec<bool> = column.v.iter().map(|v| *v != fill).collect();
+        let kept = if fill == 0.0 { known(column) } else { column.v.iter().map(|v| *v != fill).collect() };
         found.push((fill, kept.iter().filter(|k| !**k).count()));
         let keep = |values: &mut Vec<f64>| {
             let mut kept = kept.iter();
@@ -61,6 +68,39 @@ fn north_without_a_course(values: &[f64], meaning: Option<Meaning>) -> Option<f6
     (leap > LEAP && leap > LEAPS * median(usual)?).then_some(FULL)
 }
 
+/// Zero, which a table writes in the rows of a faster channel, or a logger where a sentence is missing: most of the times that the column is
+/// zero it comes back at once to where it was.
+fn zero_between_rows(column: &Column, meaning: Option<Meaning>) -> Option<f64> {
+    meaning?;
+    let v = &column.v;
+    let near = |[before, after]: &[usize; 2]| {
+        let (a, b) = (v[*before], v[*after]);
+        is_between(column, [*before, *after]) && (a - b).abs() <= RETURNS_TO * a.abs().min(b.abs())
+    };
+    let (back, gone): (Vec<[usize; 2]>, Vec<[usize; 2]>) = around_zeros(v).into_iter().partition(near);
+    (back.len() >= RETURNS && back.len() > gone.len()).then_some(0.0)
+}
+
+/// The last row before and the first after each stretch of zeros.
+fn around_zeros(v: &[f64]) -> Vec<[usize; 2]> {
+    let known: Vec<usize> = (0..v.len()).filter(|i| v[*i] != 0.0).collect();
+    known.windows(2).filter(|pair| pair[1] - pair[0] > 1).map(|pair| [pair[0], pair[1]]).collect()
+}
+
+/// Whether zeros lie for a moment between two values of one sign.
+fn is_between(Column { t, v, .. }: &Column, [before, after]: [usize; 2]) -> bool {
+    t[after] - t[before] <= RETURNS_WITHIN && v[before] * v[after] > 0.0
+}
+
+/// Which rows are known where zero stands for a missing value: a rudder that comes to rest amidships, or passes through it, is at zero.
+fn known(column: &Column) -> Vec<bool> {
+    let mut known = vec![true; column.v.len()];
+    for pair in around_zeros(&column.v).into_iter().filter(|pair| is_between(column, *pair)) {
+        known[pair[0] + 1..pair[1]].fill(false);
+    }
+    known
+}
+
 /// The largest or the smallest value, where it stands for a missing one; the further of the two first.
 fn fill(values: &[f64], meaning: Option<Meaning>) -> Option<f64> {
     let mut sorted = values.to_vec();
@@ -96,6 +136,21 @@ mod tests {
     fn without(values: &[f64], meaning: Meaning) -> Vec<(f64, usize)> {
         let t = (0..values.len()).map(|i| i as f64).collect();
         take_out(&mut Column { t, v: values.to_vec(), ..Column::default() }, Some(meaning))
+    }
+
+    #[test]
+    fn zeros_between_rows_are_missing_and_those_of_a_rudder_amidships_are_not() {
+        let of = |step: f64, value: &dyn Fn(usize) -> f64| {
+            let (t, v) = (0..200).map(|i| (step * i as f64, value(i))).unzip();
+            take_out(&mut Column { t, v, ..Column::default() }, Some(Meaning::Channel(Channel::Delta)))
+        };
+        let zigzag = |i: usize| if (i / 20).is_multiple_of(2) { 10.0 } else { -10.0 };
+        // A table twice as fast as the rudder, and a sentence that is lost now and then.
+        assert_eq!(of(0.5, &|i| if i % 2 == 1 { 0.0 } else { zigzag(i) }), [(0.0, 90)]);
+        assert_eq!(of(1.0, &|i| if i % 19 == 5 { 0.0 } else { zigzag(i) }), [(0.0, 9)]);
+        assert!(of(1.0, &|i| if i % 20 == 0 { 0.0 } else { zigzag(i) }).is_empty());
+        // Pulses of ten seconds, each put over and taken back.
+        assert!(of(1.0, &|i| if (i / 10).is_multiple_of(2) { 10.0 } else { 0.0 }).is_empty());
     }
 
     #[test]

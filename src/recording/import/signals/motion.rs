@@ -139,6 +139,9 @@ impl Track {
 const PARTS: usize = 20;
 /// Standard errors by which a steady angle differs from none.
 const SURE: f64 = 4.0;
+/// The share of the velocity ahead that a current and turning must leave for the angle to be known apart from them: about one heading, or on
+/// two that are square, a current across the heading is the same as an angle.
+const APART: f64 = 0.2;
 /// Columns of its regression.
 const COLUMNS: usize = 5;
 
@@ -164,7 +167,7 @@ impl Track {
     }
 
     /// The angle from a heading \[rad\] to the course that neither a current nor turning explains; `None` where it is not four standard
-    /// errors from nought.
+    /// errors from nought, and where the headings do not tell it from a current.
     ///
     /// The velocity of the track to starboard of the heading is regressed on the velocity ahead (its coefficient is the angle), on yaw rate
     /// and its signed square (drift in turns), and on the starboard components of north and east (a current). The errors are those of
@@ -199,6 +202,9 @@ impl Track {
             right += columns * *across;
         }
         let inverse = normal.try_inverse()?;
+        if 1.0 < APART * normal[(0, 0)] * inverse[(0, 0)] {
+            return None;
+        }
         let found = inverse * right;
         let mut spread = SMatrix::<f64, COLUMNS, COLUMNS>::zeros();
         for part in rows.chunks(per_part) {
