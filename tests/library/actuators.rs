@@ -358,6 +358,17 @@ fn what_a_model_says_of_an_actuator_is_written_and_read_again() {
 }
 
 #[test]
+fn a_value_that_the_ship_file_gives_otherwise_is_written_though_it_is_a_default() {
+    let mut model = Model::new(ship(ACTUATORS), "m", Form::General, &[]).unwrap();
+    let astern = model.index("port.astern").unwrap();
+    assert_eq!(model.parameters[astern].value, 0.6);
+    // As without a ship file's value: a reader would take the file's.
+    model.parameters[astern].value = 1.0;
+    let again = Model::from_file(&model.to_file(), ship(ACTUATORS)).unwrap();
+    assert_eq!(again.parameters[astern].value, 1.0);
+}
+
+#[test]
 fn a_recording_has_the_channels_of_its_actuators_by_name_and_a_simulation_in_the_order_of_the_ship() {
     let text =
         "t [s],x [m],y [m],psi [deg],left [rpm],a,tau.X [kN]\n0,0,0,0,60,350,1\n1,0,0,0,120,10,2\n2,0,0,0,120,20,2\n";

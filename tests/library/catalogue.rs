@@ -60,17 +60,17 @@ fn inputs_of<S: Scalar>(x: &[S]) -> Inputs<S> {
 }
 
 /// All quantities a term can change: rates, sensor report and actuators, at a point `x` followed by the parameters. Actuators
-/// reach the point through a short history, so that lags act.
+/// reach the point through a short history, so that lags act, and go on after it.
 const OUTPUTS: usize = 2 * STATES + 2;
 fn outputs<S: Number<Coefficient = S>>(model: &Model, x: &[S]) -> [S; OUTPUTS] {
     let dynamics = Dynamics::new(model, x[POINT..].to_vec());
     let state = State::from_array(std::array::from_fn(|i| x[i]));
     let now = inputs_of(x);
-    let shape = [0.2, -0.5, 0.4, 1.3, 0.8, 1.0];
+    let shape = [0.2, -0.5, 0.4, 1.3, 0.8, 1.0, 0.7];
     let mut series: Vec<Inputs<S>> =
         shape.iter().map(|k| Inputs { n: now.n * *k, delta: now.delta * *k, ..now }).collect();
     dynamics.drive(2.0, &mut series);
-    let driven = series[shape.len() - 1];
+    let driven = series[shape.len() - 2];
     let (rates, flow) = dynamics.rates(&state, &driven, &Force::zero());
     let reported = dynamics.measure(&state, &driven, &rates, &flow);
     std::array::from_fn(|i| match i {

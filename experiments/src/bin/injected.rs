@@ -41,7 +41,7 @@ struct Arguments {
     /// Only so many cases, drawn by the seed from every set and kind.
     #[arg(long)]
     sample: Option<usize>,
-    /// The 16 short cases of every push.
+    /// The 12 short cases of every push.
     #[arg(long)]
     slice: bool,
     /// With --only or --sample: the partners of the chosen cases too, so that sizes can be compared as differences.

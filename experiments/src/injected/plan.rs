@@ -412,19 +412,22 @@ fn rng_order(kind: Kind, set: &str) -> f64 {
     (turn * kinds + at) as f64 / (SETS.len() * kinds) as f64
 }
 
-/// The cases of every push: 16 short ones, with partners where there is room.
+/// How many cases every push has.
+pub const SLICE: usize = 12;
+
+/// The cases of every push: short ones of every kind, with a partner where there is room.
 pub fn ci_slice(plan: &[Planned], campaign: u64) -> Vec<Planned> {
     let short: Vec<Planned> = plan.iter().filter(|c| is_short(&c.configuration)).cloned().collect();
-    let mut chosen = sample(&short, 14, campaign);
+    let mut chosen = sample(&short, SLICE - 1, campaign);
     let mut keys: BTreeSet<String> = chosen.iter().map(|c| c.key.clone()).collect();
     let partners: Vec<String> = chosen.iter().filter_map(|c| c.partner.clone()).collect();
     for key in partners {
-        if chosen.len() < 16 && keys.insert(key.clone()) {
+        if chosen.len() < SLICE && keys.insert(key.clone()) {
             chosen.extend(plan.iter().find(|c| c.key == key).cloned());
         }
     }
     for case in short {
-        if chosen.len() < 16 && keys.insert(case.key.clone()) {
+        if chosen.len() < SLICE && keys.insert(case.key.clone()) {
             chosen.push(case);
         }
     }
@@ -489,6 +492,6 @@ mod tests {
         assert!(sample(&all, 20, 32) != small);
         let slice = ci_slice(&all, 31);
         let keys: BTreeSet<&str> = slice.iter().map(|c| c.key.as_str()).collect();
-        assert_eq!((slice.len(), keys.len(), kinds(&slice)), (16, 16, KINDS.len()));
+        assert_eq!((slice.len(), keys.len(), kinds(&slice)), (SLICE, SLICE, KINDS.len()));
     }
 }

@@ -1,4 +1,4 @@
-//! The injected cases of every push: 16 short ones of the campaign on real recordings, diagnosed in processes of their own.
+//! The injected cases of every push: 12 short ones of the campaign on real recordings, diagnosed in processes of their own.
 //! The recordings are not part of the project; without them the test is skipped with a message.
 
 use std::sync::Mutex;
@@ -9,7 +9,7 @@ use trimtab_experiments::injected::answers::results::{Results, in_order, missing
 use trimtab_experiments::injected::answers::row::Row;
 use trimtab_experiments::injected::answers::summary::scored;
 use trimtab_experiments::injected::configuration::{Configuration, Sessions, Turned, Unseen};
-use trimtab_experiments::injected::plan::{Planned, ci_slice, plan};
+use trimtab_experiments::injected::plan::{Planned, SLICE, ci_slice, plan};
 use trimtab_experiments::injected::runner::Runner;
 use trimtab_experiments::injected::set::SETS;
 
@@ -52,7 +52,7 @@ fn a_slice_of_injected_cases_is_answered_and_scored() {
     let folder = tempfile::tempdir().unwrap();
     let cases = ci_slice(&plan(SEED).unwrap(), SEED);
     let rows = run(&cases, &runner(folder.path()));
-    assert_eq!(rows.len(), 16);
+    assert_eq!(rows.len(), SLICE);
     // Every recording is read and every study understood: what is refused is a mistake that was injected.
     for row in &rows {
         assert!(row.answered() || row.kind == "mistake", "{}: {}", row.case, row.error);

@@ -292,21 +292,24 @@ fn values(f: &Finding) -> String {
 
 /// What is named, forces of the ship and errors of sensors each for themselves, the leading kind first.
 fn named(findings: &[Finding]) -> String {
-    let Some(first) = findings.first() else { return String::new() };
-    let (sensors, forces): (Vec<&Finding>, Vec<&Finding>) = findings.iter().partition(|f| f.kind == Kind::Sensor);
+    let (sensors, others): (Vec<&Finding>, Vec<&Finding>) = findings.iter().partition(|f| f.kind == Kind::Sensor);
+    let (actuators, forces): (Vec<&Finding>, Vec<&Finding>) =
+        others.into_iter().partition(|f| f.kind == Kind::Actuator);
     let confirmed = |of: &[&Finding]| of.iter().any(|f| f.grade == Grade::Confirmed);
     let said = |lead: &str, of: &[&Finding]| {
         let doubt = if confirmed(of) { "" } else { ", suspected and not confirmed" };
         let all: Vec<String> = of.iter().map(|f| titled(f)).collect();
         format!("{lead}{doubt}: {}.", all.join("; and "))
     };
-    let sensor = if forces.is_empty() { "A sensor, not the ship" } else { "A sensor error" };
-    let parts = [(&forces, "Missing physics"), (&sensors, sensor)];
-    let mut sentences: Vec<String> =
+    let alone = forces.is_empty() && actuators.is_empty();
+    let sensor = if alone { "A sensor, not the ship" } else { "A sensor error" };
+    let mut parts = [(&forces, "Missing physics"), (&actuators, "An actuator or its record"), (&sensors, sensor)];
+    // What is found first leads.
+    parts.sort_by_key(|(of, _)| {
+        findings.iter().position(|f| of.first().is_some_and(|first| first.mechanism == f.mechanism))
+    });
+    let sentences: Vec<String> =
         parts.iter().filter(|(of, _)| !of.is_empty()).map(|(of, lead)| said(lead, of)).collect();
-    if first.kind == Kind::Sensor {
-        sentences.reverse();
-    }
     sentences.join(" ")
 }
 

@@ -16,6 +16,7 @@ use crate::physics::{Kind, Mechanism};
 use crate::recording::Run;
 use crate::simulate::Integration;
 use crate::statistics::scattered_p;
+use crate::terms::propulsion::actuator::ActuatorTerm;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -331,17 +332,22 @@ impl CandidateTests<'_> {
         let reference = against(self.base);
         let mut parts = groups(contrast, self.sessions, self.columns.len());
         parts.retain(|part| self.is_comparable_with_the_rest(part));
-        // Where nothing else decides, what differs is what changed since the first recording; an actuator or its record fails for a while, and
-        // what most recordings show of it is sound.
+        // Where nothing else decides, what differs is what changed since the first recording.
         let since = |part: &Vec<String>| self.evidence.runs.first().is_some_and(|r| part.contains(&r.session));
-        let fails = self.candidate.mechanism.kind == Kind::Actuator;
-        parts.sort_by_key(|part| (fails && self.is_most(part), since(part)));
+        parts.sort_by_key(since);
+        // An actuator or its record fails for a while: where that has no side, what most recordings show of it is sound, and a loss is none
+        // where it is negative.
+        let is_loss = self.candidate.names.first().is_some_and(|name| ActuatorTerm::is_loss(name));
+        if self.candidate.mechanism.kind == Kind::Actuator && !is_loss {
+            parts.retain(|part| !self.is_most(part));
+        }
         let in_group = |group: Vec<String>| {
             let test = self.evidence.test_in(&reference, self.columns, &named(&group));
             self.tested(Extent::In(group), test, 1.0)
         };
+        let rank = |t: &Tested| (t.possible, !is_loss || t.test.amplitude.iter().all(|a| *a >= 0.0));
         let better = |best: Tested, next: Tested| {
-            let by_rank = next.possible.cmp(&best.possible);
+            let by_rank = rank(&next).cmp(&rank(&best));
             let more = next.test.statistic > best.test.statistic + EQUAL_STATISTICS;
             if by_rank.is_gt() || (by_rank.is_eq() && more) { next } else { best }
         };

@@ -43,11 +43,12 @@ const DEGREE: f64 = TURN / 360.0;
 /// The international knot: 1852 m an hour.
 const KNOT: f64 = 1852.0 / 3600.0;
 
-/// A positive number as it stands before a unit: `0.1`, `1/100`.
-fn many(number: &str) -> Option<f64> {
+/// A unit with a positive number before it, `0.1 deg` or `1/100 deg`: the number, and the spelling of the unit.
+pub(crate) fn scaled(spelling: &str) -> Option<(f64, &str)> {
+    let (number, of) = spelling.split_once(' ')?;
     let (over, under) = number.split_once('/').unwrap_or((number, "1"));
     let many = over.parse::<f64>().ok()? / under.parse::<f64>().ok()?;
-    (many.is_finite() && many > 0.0).then_some(many)
+    (many.is_finite() && many > 0.0).then_some((many, of))
 }
 
 const fn unit(quantity: Quantity, spellings: &'static [&'static str], factor: f64) -> Unit {
@@ -178,9 +179,7 @@ impl Quantity {
     /// `1/100 deg`.
     pub fn factor(self, spelling: &str) -> Option<f64> {
         let spelling = spelling.trim();
-        if let Some((number, of)) = spelling.split_once(' ')
-            && let Some(many) = many(number)
-        {
+        if let Some((many, of)) = scaled(spelling) {
             return Some(many * self.factor(of)?);
         }
         let exact = self.units().find(|u| u.spellings.contains(&spelling));
@@ -220,6 +219,8 @@ mod tests {
     fn known_conversions_hold() {
         let close = |a: Option<f64>, b: f64| assert!((a.unwrap() - b).abs() < 1e-12 * b, "{a:?} {b}");
         close(Quantity::Speed.factor("kn"), 0.514_444_444_444_444_4);
+        close(Quantity::Angle.factor("0.01 deg"), 0.01 * DEGREE);
+        close(Quantity::Rotation.factor("1/10 rpm"), 1.0 / 600.0);
         close(Quantity::Speed.factor("KM/H"), 1.0 / 3.6);
         close(Quantity::Angle.factor("deg"), std::f64::consts::PI / 180.0);
         close(Quantity::AngularRate.factor("deg/min"), std::f64::consts::PI / 180.0 / 60.0);

@@ -49,12 +49,17 @@ pub fn verdict_words(verdict: Verdict) -> &'static str {
     }
 }
 
-/// The verdict in capitals; one on suspected findings alone says so, and one on a force and a sensor names both.
+/// The verdict in capitals; one on suspected findings alone says so, one on a force and a sensor names both, and one on actuators alone is no
+/// physics that a model lacks.
 pub(super) fn title(d: &Diagnosis) -> String {
     let led = matches!(d.verdict, Verdict::Named | Verdict::Sensor);
     let Some(first) = d.findings.first().filter(|_| led) else { return verdict_words(d.verdict).to_owned() };
-    let level: Vec<bool> =
-        d.findings.iter().filter(|f| f.grade == first.grade).map(|f| f.kind == Kind::Sensor).collect();
+    let kinds = || d.findings.iter().filter(|f| f.grade == first.grade).map(|f| f.kind);
+    if kinds().all(|kind| kind == Kind::Actuator) {
+        let words = "AN ACTUATOR OR ITS RECORD";
+        return if first.grade == Grade::Confirmed { words.to_owned() } else { format!("{words}, SUSPECTED") };
+    }
+    let level: Vec<bool> = kinds().map(|kind| kind == Kind::Sensor).collect();
     match (level.contains(&false), level.contains(&true), first.grade == Grade::Confirmed) {
         (true, true, true) => "MISSING PHYSICS AND A SENSOR ERROR".to_owned(),
         (true, true, false) => "MISSING PHYSICS AND A SENSOR ERROR, SUSPECTED".to_owned(),

@@ -381,6 +381,11 @@ impl ActuatorTerm {
         parameter == "slope" || parameter.starts_with("gain")
     }
 
+    /// Whether a parameter of this dotted name is the share of the push of an actuator that is lost.
+    pub fn is_loss(name: &str) -> bool {
+        name.split_once('.').is_some_and(|(_, parameter)| parameter == LOST.name)
+    }
+
     /// Whether a parameter is one of a law that particulars give no more than roughly: it is estimated along, with its spread as prior.
     pub fn is_uncertain(parameter: &str) -> bool {
         ["loss", "astern", "wake", "kt0", "wake_ratio", "race", "straightening"].contains(&parameter)

@@ -6,6 +6,7 @@ use super::vocabulary::{
     NEUTRAL, ORDERS, PHRASES, RELATIVE, SHIPS, SINCE, SPEEDS, VAGUE, WIND, WIND_DIRECTIONS, WIND_SPEEDS, is_on,
     phrases,
 };
+use crate::recording::file::unit::scaled;
 use crate::recording::import::signals::log::Meaning;
 use crate::recording::{Channel, Quantity, UNITS};
 use std::ops::Range;
@@ -142,17 +143,14 @@ fn is_of_names(text: &str) -> bool {
         all.any(|of| of == word)
     };
     let known = |word: &str| {
-        (word.chars().count() < 2 && !word.contains(|c: char| c.is_ascii_digit()))
-            || lists.iter().any(|list| is_on(list, word))
-            || is_wind_word(word)
-            || phrased(word)
+        word.chars().count() < 2 || lists.iter().any(|list| is_on(list, word)) || is_wind_word(word) || phrased(word)
     };
     !text.contains(['/', '^', '%']) && words(text).iter().any(|word| known(unnumbered(word)))
 }
 
 /// Whether a text is the spelling of a unit.
 pub fn is_unit(text: &str) -> bool {
-    let text = text.trim();
+    let text = scaled(text.trim()).map_or(text, |(_, of)| of).trim();
     UNITS.iter().any(|u| u.spellings.iter().any(|s| !s.is_empty() && s.eq_ignore_ascii_case(text)))
 }
 
@@ -424,6 +422,7 @@ mod tests {
         for (field, name, unit) in [
             ("Depth (fm)", "Depth", Some("fm")),
             ("Rudder [increments]", "Rudder", Some("increments")),
+            ("Heading [0.01 deg]", "Heading", Some("0.01 deg")),
             ("Drehzahl [U/min]", "Drehzahl", Some("U/min")),
             ("lat [min]", "lat", Some("min")),
             ("Rudder [deg, + port]", "Rudder + port", Some("deg")),

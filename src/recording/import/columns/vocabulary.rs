@@ -58,7 +58,7 @@ pub const PHRASES: &[(Meaning, &str)] = &[
     ),
     (
         Channel(N),
-        "rpm, rps, nps, revs, rev, revolutions, revolution, drehzahl, propellerdrehzahl, wellendrehzahl, \
+        "rpm, rps, nps, revs, rev, revolutions, revolution, drehzahl, motordrehzahl, propellerdrehzahl, wellendrehzahl, \
          turtall, toerental, shaft speed, shaft rate, propeller rate, propeller speed, prop speed, propeller \
          rotation, engine speed, tours, tours helice, tours par minute, regime, regime helice, regime moteur, \
          vitesse helice, giri, giri elica, giri motore, revoluciones, revoluciones helice, revoluciones por \
