@@ -16,6 +16,7 @@
 //! von Neumann, Ann. Math. Stat. 12 (1941) 367-395 for successive differences; Kish, Survey Sampling (1965), for the design
 //! effect.
 
+use super::backwards::{Estimated, backwards};
 use super::covariance::Covariances;
 use super::inputs::{APART_RECORDINGS, INPUT_CHANCE, InputError};
 use super::objectives::cost::Cost;
@@ -26,7 +27,6 @@ use crate::recording::Run;
 use crate::ship::Ship;
 use crate::state::STATES;
 use crate::statistics::{outlier_p, quantile};
-use crate::terms::propulsion::actuator::ActuatorTerm;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -230,29 +230,10 @@ impl ResidualStatistics {
     }
 }
 
-/// Standard errors by which a gain is below zero where its actuator pushes against its order.
-const BACKWARDS: f64 = 3.0;
-
-/// A free parameter with its estimate, standard error where the data give one, and unit.
-pub(crate) type Estimated<'a> = (&'a str, f64, Option<f64>, &'a str);
-
-/// The actuators of a craft that push against their orders: a gain that is surely negative.
-pub(crate) fn backwards<'a>(ship: &Ship, estimates: impl Iterator<Item = Estimated<'a>>) -> Vec<Doubt> {
-    let doubt = |(name, value, error, unit): Estimated<'a>| {
-        let (actuator, parameter) = name.split_once('.')?;
-        let is_negative = error.is_some_and(|error| value < -BACKWARDS * error);
-        (ActuatorTerm::is_gain(parameter) && is_negative && ship.actuator(actuator).is_some()).then(|| Doubt {
-            kind: DoubtKind::Backwards,
-            value,
-            limit: 0.0,
-            sentence: format!(
-                "`{actuator}` pushes against its order ({name} = {} {unit}): its order or its angle is recorded with the other sign (`scale = -1` \
-                 in a column map turns it), its place or angle in the ship file is another, or it is the log of another actuator",
-                sig(value, 3)
-            ),
-        })
-    };
-    estimates.filter_map(doubt).collect()
+/// The doubts about the actuators of a craft that push against their orders.
+pub(in crate::fit) fn against_orders<'a>(ship: &Ship, estimates: impl Iterator<Item = Estimated<'a>>) -> Vec<Doubt> {
+    let doubt = |(value, sentence)| Doubt { kind: DoubtKind::Backwards, value, limit: 0.0, sentence };
+    backwards(ship, estimates).into_iter().map(doubt).collect()
 }
 
 /// The first line of a fit: how it ended, and what is said against it.

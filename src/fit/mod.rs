@@ -7,11 +7,13 @@
 //! | `solver` | from a start to an optimum that was checked: the problem that Ipopt is given, its limits and its stages |
 //! | `settings` | section `[fit]` of a study |
 //! | `covariance` | covariances, and what the data do not determine |
+//! | `backwards` | actuators that push against their orders |
 //! | `doubts` | what residuals say against a fit: model error, windows too long, residuals alike |
 //! | `inputs` | whether one recording's rudder angle or propeller rate has another gain or zero than the others' |
 //! | `summary` | the outcome: estimates, intervals, active constraints; [`fit`] joins all |
 //! | [`multistart`] | the same fit from many starts |
 
+pub(crate) mod backwards;
 #[cfg(feature = "ipopt")]
 mod covariance;
 #[cfg(feature = "ipopt")]
@@ -32,7 +34,6 @@ pub use crate::ipopt::Counts;
 #[cfg(feature = "ipopt")]
 pub use covariance::{Covariance, CovarianceKind, SANDWICH_FROM};
 #[cfg(feature = "ipopt")]
-pub(crate) use doubts::backwards;
 pub use doubts::{Doubt, DoubtKind, GROWTH_LIMIT, LIKENESS_LIMIT, MODEL_ERROR_LIMIT, ResidualStatistics};
 pub use error::FitError;
 #[cfg(feature = "ipopt")]

@@ -2,7 +2,7 @@
 //! It solves nothing and prints nothing; the words are in [`report`](super::report).
 
 use super::covariance::{Covariance, CovarianceKind, Covariances, in_words};
-use super::doubts::{Doubt, ResidualStatistics, backwards, headline};
+use super::doubts::{Doubt, ResidualStatistics, against_orders, headline};
 use super::error::FitError;
 use super::inputs::{InputError, Inputs, SeenInput, inputs};
 use super::settings::{FitSettings, Goal, Hessian};
@@ -279,7 +279,7 @@ fn describe(task: &Task, evaluations: &Evaluations, noise: Option<&Noise>, unit:
     let Inputs { error: input_error, seen: seen_inputs } = inputs(task, &end.p, noise);
     let estimates = estimates(task, &end, &covariances);
     let free = estimates.iter().map(|e| (e.name.as_str(), e.value, e.standard_error, e.unit));
-    let mut doubts = backwards(&model.ship, free);
+    let mut doubts = against_orders(&model.ship, free);
     doubts.extend(statistics.doubts(input_error.as_ref(), &covariances, task.scaling.scales.len()));
     let mut validity = Count::new(&model);
     task.runs.iter().for_each(|run| validity.add(validity::samples(&run)));

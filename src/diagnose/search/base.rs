@@ -7,7 +7,7 @@ use crate::diagnose::evidence::admit::{Admission, admit, followed};
 use crate::diagnose::settings::{
     EULER_EXACT, EULER_HOPELESS, Effort, FIRST, LEFT_TO_GAIN, LOSS_ROUNDS, REFIT, SETTLE, Settings,
 };
-use crate::fit::backwards;
+use crate::fit::backwards::backwards;
 use crate::likelihood::estimate::{Estimate, estimate, left_to_gain, log_posterior, passes};
 use crate::likelihood::noise::NoisePrior;
 use crate::likelihood::noise_fit::guess;
@@ -134,7 +134,7 @@ impl BaseFit {
         });
         let noted = backwards(&model.ship, estimated)
             .into_iter()
-            .map(|doubt| Issue::new(Severity::Warning, "backwards", doubt.sentence, "correct that first"));
+            .map(|(_, sentence)| Issue::new(Severity::Warning, "backwards", sentence, "correct that first"));
         let noted: Vec<Issue> = noted.collect();
         self.admission.issues.extend(noted);
         self
