@@ -154,7 +154,12 @@ fn the_sides_of_a_ship_with_one_screw_differ_and_a_sensor_error_left_out_is_name
             .unwrap();
     let again = alike.diagnosis.sides.unwrap();
     // 1e-4 is what the diagnosis itself asks for before it says that the sides differ.
-    assert!(alike.diagnosis.findings.is_empty() && again.p < 1e-4, "{again:?}");
+    // A model whose sides are alike is wrong, and what is suspected of it may be: not weather, and nothing that unseen runs confirm.
+    for f in &alike.diagnosis.findings {
+        let is_weather = kvlcc2_diagnosed::NOT_IN_A_BASIN.contains(&f.mechanism.as_str());
+        assert!(!is_weather && f.grade == Grade::Suspected, "{f:?}");
+    }
+    assert!(again.p < 1e-4, "{again:?}");
     for p in &again.parameters {
         let before = sides.parameters.iter().find(|q| q.name == p.name).unwrap();
         assert!((p.value - before.value).abs() < before.ci95[1] - before.value, "{p:?} {before:?}");
