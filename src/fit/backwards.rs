@@ -15,14 +15,17 @@ pub(crate) fn backwards<'a>(ship: &Ship, estimates: impl Iterator<Item = Estimat
     let doubt = |(name, value, error, unit): Estimated<'a>| {
         let (actuator, parameter) = name.split_once('.')?;
         let is_negative = error.is_some_and(|error| value < -BACKWARDS * error);
-        (ActuatorTerm::is_gain(parameter) && is_negative && ship.actuator(actuator).is_some()).then(|| {
- let sentence = format!(
-                "`{actuator}` pushes against its order ({name} = {} {unit}): its order or its angle is recorded with the other sign (`scale = -1` \
-                 in a column map turns it), its place or angle in the ship file is another, or it is the log of another actuator",
-                sig(value, 3)
-            );
- (value, sentence)
- })
+        let pushes_back = ActuatorTerm::is_gain(parameter) && is_negative && ship.actuator(actuator).is_some();
+        pushes_back.then(|| (value, words(actuator, name, value, unit)))
     };
     estimates.filter_map(doubt).collect()
+}
+
+/// What may be wrong with it.
+fn words(actuator: &str, name: &str, value: f64, unit: &str) -> String {
+    format!(
+        "`{actuator}` pushes against its order ({name} = {} {unit}): its order or its angle is recorded with the other sign (`scale = -1` \
+         in a column map turns it), its place or angle in the ship file is another, or it is the log of another actuator",
+        sig(value, 3)
+    )
 }

@@ -132,11 +132,9 @@ impl BaseFit {
             let error = covariance.as_ref().map(|c| c[(i, i)].max(0.0).sqrt() * f.column.scale);
             (p.name.as_str(), f.value(model), error, p.info.unit)
         });
-        let noted = backwards(&model.ship, estimated)
-            .into_iter()
-            .map(|(_, sentence)| Issue::new(Severity::Warning, "backwards", sentence, "correct that first"));
-        let noted: Vec<Issue> = noted.collect();
-        self.admission.issues.extend(noted);
+        let issue = |(_, sentence)| Issue::new(Severity::Warning, "backwards", sentence, "correct that first");
+        let noted = backwards(&model.ship, estimated);
+        self.admission.issues.extend(noted.into_iter().map(issue));
         self
     }
 

@@ -160,19 +160,20 @@ pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, 
 
 /// Puts a heading that a logger interpolated across north on the short way round, before velocities are turned by it.
 fn mend_heading(signals: &mut Signals) {
-    let rate = signals.by.get(&Meaning::Channel(Channel::R)).cloned();
-    let course = signals.by.get(&Meaning::Course).cloned();
-    let Some(psi) = signals.by.get_mut(&Meaning::Channel(Channel::Psi)) else { return };
+    let heading = Meaning::Channel(Channel::Psi);
+    let Some(mut psi) = signals.by.remove(&heading) else { return };
+    let (rate, course) = (signals.by.get(&Meaning::Channel(Channel::R)), signals.by.get(&Meaning::Course));
     // How far the yaw rate says that the ship turned meanwhile, or the course that counts turns.
     let turned = |t: &[f64]| {
         let (from, to) = (*t.first()?, *t.last()?);
         let by_course = |course: &Signal| course.at(to, course.step) - course.at(from, course.step);
         let by_rate = |r: &Signal| t.windows(2).map(|t| r.at(0.5 * (t[0] + t[1]), r.step) * (t[1] - t[0])).sum::<f64>();
-        let known = [rate.as_ref().map(by_rate), course.as_ref().map(by_course)];
+        let known = [rate.map(by_rate), course.map(by_course)];
         known.into_iter().flatten().find(|turned| turned.is_finite())
     };
-    let times = psi.t.clone();
-    let mended = repair(&times, &mut psi.v, |from, to| turned(&times[from..=to]));
+    let Signal { t, v, .. } = &mut psi;
+    let mended = repair(t, v, |from, to| turned(&t[from..=to]));
+    signals.by.insert(heading, psi);
     if mended > 0 {
         signals.notes.push(format!(
             "heading: {mended} values lie on the wrong way round between two true ones, as where a logger interpolates across north; \

@@ -167,7 +167,7 @@ impl Track {
     }
 
     /// The angle from a heading \[rad\] to the course that neither a current nor turning explains; `None` where it is not four standard
-    /// errors from nought, and where the headings do not tell it from a current.
+    /// errors from nought, and where the headings do not distinguish it from a current.
     ///
     /// The velocity of the track to starboard of the heading is regressed on the velocity ahead (its coefficient is the angle), on yaw rate
     /// and its signed square (drift in turns), and on the starboard components of north and east (a current). The errors are those of
