@@ -293,7 +293,7 @@ def test_a_study_of_tables_names_the_argument_that_is_wrong(study: trimtab.Study
         (lambda: made(antenna=(1, 2, 3)), "antenna has 3 values: give two"),
         (lambda: made(unit={}), "from_dataframe() got an unexpected keyword argument 'unit'"),
         (lambda: made(table.assign(u="fast")), "needed: column `u` contains what is no number, such as `fast` in line 2, and is not used"),
-        (lambda: made(table.drop(columns=["x", "u", "v"])), 'name it with `columns={"lat": "NAME", "lon": "NAME"}` or `columns={"cog"'),
+        (lambda: made(table.drop(columns=["x", "u", "v"])), 'name it with `columns={"lat": "NAME", "lon": "NAME"}`, `columns={"x": "NAME", "y": "NAME"}` (north and east) or `columns={"cog"'),
         (lambda: made(helm.assign(helm="x"), columns={"delta": "helm"}), "contains what is no number, such as `x` in line 2; write numbers there"),
     ]
     for mistake, words in wrong:
