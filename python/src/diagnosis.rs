@@ -21,6 +21,7 @@ use trimtab::report::diagnosis::{Provenance, page, pictures, summary};
 
 /// What a caller asks of a diagnosis.
 pub struct Asked {
+    pub repeat: bool,
     pub once: bool,
     pub withhold: Vec<String>,
     pub seed: Option<u64>,
@@ -31,7 +32,7 @@ impl Asked {
     pub fn settings(self, loaded: &Loaded) -> PyResult<Settings> {
         let mut settings = loaded.diagnose_settings().map_err(Raised::raised)?;
         settings.seed = self.seed.unwrap_or(settings.seed);
-        settings.repeat &= !self.once;
+        settings.repeat = (settings.repeat || self.repeat) && !self.once;
         let catalogue = loaded.model.catalogue();
         if let Some(message) = self.withhold.iter().find_map(|name| no_mechanism(name, catalogue)) {
             return Err(PyValueError::new_err(format!("withhold: {message}")));

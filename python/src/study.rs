@@ -392,14 +392,16 @@ impl Study {
 
     /// Names the physics that the model lacks, with its size, and proves the gain on runs that no earlier step has used: see Diagnosis.
     ///
-    /// `once` does not repeat the analysis to see whether what it names is stable (five to seven times as fast); `withhold` names
-    /// mechanisms that must not be considered; `progress` is called with each step in words, and its False ends the diagnosis.
-    #[pyo3(signature = (*, model=None, once=false, withhold=Words::default(), seed=None, accept=Words::default(),
+    /// `repeat` repeats the analysis on the recordings turned, mirrored, cut, thinned and with other start values, to see whether what it
+    /// names is stable (five to seven times as long), `once` does not, whatever the study says; `withhold` names mechanisms that must not be
+    /// considered; `progress` is called with each step in words, and its False ends the diagnosis.
+    #[pyo3(signature = (*, model=None, repeat=false, once=false, withhold=Words::default(), seed=None, accept=Words::default(),
                         progress=None))]
     fn diagnose(
         &self,
         py: Python<'_>,
         model: Option<&Model>,
+        repeat: bool,
         once: bool,
         withhold: Words,
         seed: Option<i128>,
@@ -407,7 +409,7 @@ impl Study {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Diagnosis> {
         let seed = seed.map(|given| whole_number("seed", given, SEEDS)).transpose()?;
-        let asked = Asked { once, withhold: withhold.0, seed };
+        let asked = Asked { repeat, once, withhold: withhold.0, seed };
         let settings = asked.settings(&self.loaded)?;
         self.audit(py, accept, false)?;
         let (train, all) = (self.windows_of(py, Side::Train)?, self.read(py)?);

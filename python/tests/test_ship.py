@@ -120,7 +120,7 @@ def test_a_diagnosis_names_what_was_concealed(tmp_path: Path) -> None:
         tables[f"run_{k:02}"] = pd.DataFrame({**inputs, **dict(zip(["x", "y", "psi", "u", "v", "r"], noisy.T))})
     study = trimtab.Study.from_dataframe(tables, ship=ship, units={"psi": "rad", "delta": "rad", "n": "rps"}, split=False)
     steps: list[str] = []
-    diagnosis = study.diagnose(once=True, progress=steps.append)
+    diagnosis = study.diagnose(progress=steps.append)
     assert diagnosis.findings[0]["mechanism"] == "current" and len(steps) > 3
     found = diagnosis.to_frame()
     assert set(found["mechanism"]) == {"current"}
@@ -133,4 +133,4 @@ def test_a_diagnosis_names_what_was_concealed(tmp_path: Path) -> None:
 
 def test_a_diagnosis_ends_at_false_with_keyboard_interrupt(study: trimtab.Study) -> None:
     with pytest.raises(KeyboardInterrupt):
-        study.diagnose(once=True, progress=lambda step: False)
+        study.diagnose(progress=lambda step: False)

@@ -471,6 +471,7 @@ class Study:
         self,
         *,
         model: Model | None = None,
+        repeat: bool = False,
         once: bool = False,
         withhold: str | Sequence[str] = ...,
         seed: int | None = None,

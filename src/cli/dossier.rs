@@ -56,12 +56,15 @@ pub struct Args {
     #[arg(long = "use", value_name = "TEXT")]
     intended_use: Option<String>,
     /// diagnosis.json of an earlier `trimtab diagnose` on this study and model, instead of a new diagnosis.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["once", "calibrate", "no_diagnosis"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["repeat", "once", "calibrate", "no_diagnosis"])]
     diagnosis: Option<PathBuf>,
     /// Makes no diagnosis; causes of error and error rates are then missing.
-    #[arg(long, conflicts_with_all = ["once", "calibrate"])]
+    #[arg(long, conflicts_with_all = ["repeat", "once", "calibrate"])]
     no_diagnosis: bool,
-    /// Does not repeat the diagnosis on changed recordings.
+    /// Repeats the diagnosis on changed recordings, as `trimtab diagnose --repeat`.
+    #[arg(long, conflicts_with = "once")]
+    repeat: bool,
+    /// Does not repeat the diagnosis, whatever the study says.
     #[arg(long)]
     once: bool,
     /// Simulated studies for the error rates, as for `trimtab diagnose`.
@@ -130,7 +133,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
 /// The settings of the diagnosis that is made here.
 fn diagnosis_settings(loaded: &Loaded, args: &Args) -> Result<Settings, CliError> {
     let mut settings = prepared(loaded, loaded.diagnose_settings()?)?;
-    settings.repeat &= !args.once;
+    settings.repeat = (settings.repeat || args.repeat) && !args.once;
     settings.calibrate = args.calibrate.unwrap_or(settings.calibrate);
     Ok(settings)
 }

@@ -84,7 +84,8 @@ fn written_and_sized(question: &Question, mut answer: Answer, held_out: &[Run]) 
     (question.progress)("fitting the models that are written");
     let tests = &answer.kept.selection.tests;
     // What is named in the end does not change the model without it.
-    let base = tests.problem(question.settings).written(&tests.fit.estimate);
+    let known = tests.fit.within.clone();
+    let base = known.unwrap_or_else(|| tests.problem(question.settings).written(&tests.fit.estimate));
     loop {
         let written = Written::new(question, &answer, base.clone());
         let lost = sized(&mut answer.findings, &answer.kept.selection, &written.found);
@@ -243,7 +244,7 @@ mod tests {
     #[test]
     fn the_steps_run_in_order_and_a_current_is_named_with_its_proof() -> Result<(), DiagnoseError> {
         let truth = runs(&with(&[("current.north", 0.3)]), 15);
-        let settings = Settings { nuisance: false, ..Settings::default() };
+        let settings = Settings { nuisance: false, repeat: true, ..Settings::default() };
         let steps = Mutex::new(Vec::new());
         let note = |step: &str| steps.lock().unwrap().push(step.to_owned());
         let d = diagnose(&model(), &truth[..12], &truth[12..], &settings, &note)?;
@@ -274,7 +275,7 @@ mod tests {
 
     #[test]
     fn without_held_out_runs_a_part_of_the_recordings_proves_and_with_few_nothing_does() -> Result<(), DiagnoseError> {
-        let settings = Settings { nuisance: false, repeat: false, ..Settings::default() };
+        let settings = Settings { nuisance: false, ..Settings::default() };
         let d = diagnose(&model(), runs(&model(), 6), &[], &settings, &|_| ())?;
         assert!(d.held_out.is_none() && d.findings.is_empty() && d.set_aside == 0);
         let truth = with(&[("current.north", 0.3)]);
@@ -288,7 +289,7 @@ mod tests {
 
     #[test]
     fn a_name_that_unseen_runs_refute_is_withdrawn_and_not_written() -> Result<(), DiagnoseError> {
-        let settings = Settings { nuisance: false, repeat: false, ..Settings::default() };
+        let settings = Settings { nuisance: false, ..Settings::default() };
         // The current of the training runs turns before the others are sailed.
         let (train, test) = (runs(&with(&[("current.north", 0.3)]), 12), runs(&with(&[("current.north", -0.3)]), 6));
         let d = diagnose(&model(), train, &test, &settings, &|_| ())?;

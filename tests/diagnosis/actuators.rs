@@ -21,8 +21,7 @@ fn case(faults: &[(&str, f64)], session: Option<&str>, spoil: fn([f64; 2]) -> [f
     for inputs in data.iter_mut().flat_map(|run| &mut run.inputs) {
         [inputs.commands[0], inputs.commands[1]] = spoil([inputs.commands[0], inputs.commands[1]]);
     }
-    let settings = Settings { repeat: false, ..Settings::default() };
-    diagnose(&base, &data[..16], &data[16..], &settings, &|_| ()).unwrap()
+    diagnose(&base, &data[..16], &data[16..], &Settings::default(), &|_| ()).unwrap()
 }
 
 /// The craft as it is: its thrusters differ a little from each other and from what was assumed.

@@ -30,7 +30,7 @@ static CASE: LazyLock<Case> = LazyLock::new(|| {
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).unwrap();
     write_study(&folder, 24, [0.2, 0.1]);
-    let output = trimtab(&folder, &["diagnose", "study.toml", "--out", "results"]);
+    let output = trimtab(&folder, &["diagnose", "study.toml", "--repeat", "--out", "results"]);
     assert!(output.status.success(), "{}{}", text(&output.stdout), text(&output.stderr));
     let document = std::fs::read_to_string(folder.join("results/diagnosis.json")).unwrap();
     Case { folder, output, document: serde_json::from_str(&document).unwrap() }

@@ -9,14 +9,9 @@ use trimtab::recording::{Channel, Labels, Measured, Recording, Run, WindowSettin
 use trimtab::ship::parameter::Parity;
 use trimtab::ship::state::Inputs;
 
-/// One analysis, which is not repeated on transformed recordings. That repetitions agree where the truth is found is tested on a current.
-fn once() -> Settings {
-    Settings { repeat: false, ..Settings::default() }
-}
-
 /// Thirty training runs and ten test runs of a ship with physics that the base model lacks, analysed once.
 fn case(set: &[(&str, f64)], sessions: &[&str], seed: u64) -> Diagnosis {
-    case_by(&once(), set, sessions, seed)
+    case_by(&Settings::default(), set, sessions, seed)
 }
 
 /// As [`case`], by these settings.
@@ -76,7 +71,7 @@ fn velocities_that_were_not_measured_are_not_taken_for_gusts() {
         assert_eq!(run.channels(), [true, true, true, false, false, true]);
         assert!((run.mean_speed() - run.path_length() / run.duration()).abs() < 1e-9 && run.mean_speed() > 0.5);
     }
-    let d = diagnose(&model(), &data[..18], &data[18..], &once(), &|_| ()).unwrap();
+    let d = diagnose(&model(), &data[..18], &data[18..], &Settings::default(), &|_| ()).unwrap();
     assert_eq!((d.verdict, d.findings.len()), (Verdict::NothingMissing, 0), "{}", d.headline);
 }
 
@@ -96,7 +91,7 @@ fn a_wrong_unit_or_sign_is_reported_before_any_physics() {
     for (fault, channel, spoil) in faults {
         let mut data = runs(&model(), &truth_noise(), 12, 101);
         data.iter_mut().for_each(spoil);
-        let d = diagnose(&model(), &data[..9], &data[9..], &once(), &|_| ()).unwrap();
+        let d = diagnose(&model(), &data[..9], &data[9..], &Settings::default(), &|_| ()).unwrap();
         assert_eq!(d.verdict, Verdict::Sensor, "{fault} of {channel}: {}", d.headline);
         let first = d.admission.issues.iter().find(|i| i.blocking()).unwrap();
         assert_eq!((first.fault, first.channel.unwrap().name()), (fault, channel), "{first:?}");
@@ -105,7 +100,7 @@ fn a_wrong_unit_or_sign_is_reported_before_any_physics() {
 
 #[test]
 fn a_current_is_named_with_its_set_and_improves_unseen_runs() {
-    let d = case_by(&Settings::default(), &[("current.north", 0.1)], &[], 3);
+    let d = case_by(&Settings { repeat: true, ..Settings::default() }, &[("current.north", 0.1)], &[], 3);
     assert!(d.stability.as_ref().is_some_and(|s| s.same == s.of), "{:?}", d.stability);
     assert_eq!(d.verdict, Verdict::Named, "{}", d.headline);
     assert_eq!(d.findings[0].mechanism, "current");
@@ -166,7 +161,7 @@ fn a_model_of_three_metres_and_its_similar_ship_have_equal_diagnoses() {
     let resistance = |i: usize| if (1..=3).contains(&i) { force / speed.powi(i as i32) } else { 1.0 };
     small.set_eleven(&std::array::from_fn(|i| STAR[i] * resistance(i)));
     let of = |model: &Model, data: &[Run], rate: f64| {
-        let mut settings = once();
+        let mut settings = Settings::default();
         settings.judging.max_yaw_rate *= rate;
         diagnose(model, &data[..18], &data[18..], &settings, &|_| ()).unwrap()
     };
@@ -208,7 +203,7 @@ fn another_each_session(currents: &[(&str, [f64; 2])], seed: u64) -> Diagnosis {
         }
     }
     let data = runs(&truth, &truth_noise(), 40, seed);
-    diagnose(&base, &data[..30], &data[30..], &once(), &|_| ()).unwrap()
+    diagnose(&base, &data[..30], &data[30..], &Settings::default(), &|_| ()).unwrap()
 }
 
 #[test]
@@ -250,7 +245,7 @@ fn a_jump_of_the_receiver_is_not_named_a_push() {
             add(m, 1, 12.0 * psi.sin());
         }
     }
-    let d = diagnose(&model(), &data, &spare(), &once(), &|_| ()).unwrap();
+    let d = diagnose(&model(), &data, &spare(), &Settings::default(), &|_| ()).unwrap();
     assert!(d.findings.is_empty(), "{}", d.headline);
     let jumped = d.admission.issues.iter().filter(|i| i.fault == "jump" && !i.blocking());
     assert_eq!(jumped.count(), 10);
@@ -268,7 +263,7 @@ fn slipped(every: usize) -> (Diagnosis, Vec<String>) {
     for run in data.iter_mut().skip(1).step_by(every) {
         run.measured[60..].iter_mut().for_each(|m| add(m, 2, 1.0));
     }
-    let d = diagnose(&model(), &data, &spare(), &once(), &|_| ()).unwrap();
+    let d = diagnose(&model(), &data, &spare(), &Settings::default(), &|_| ()).unwrap();
     let lost = d.admission.issues.iter().filter(|i| i.fault == "lost" && !i.blocking());
     let texts = lost.map(|i| i.text.clone()).collect();
     (d, texts)
@@ -290,7 +285,7 @@ fn runs_that_the_model_cannot_follow_are_reported() {
 fn inputs_missing_for_a_while_are_reported_and_not_taken_for_physics() {
     let mut data = runs(&model(), &truth_noise(), 30, 106);
     data[13].inputs[60..100].iter_mut().for_each(|i| (i.n, i.delta) = (-3.0, -0.6));
-    let d = diagnose(&model(), &data, &spare(), &once(), &|_| ()).unwrap();
+    let d = diagnose(&model(), &data, &spare(), &Settings::default(), &|_| ()).unwrap();
     assert!(d.findings.is_empty(), "{}", d.headline);
     let lost = d.admission.issues.iter().filter(|i| i.fault == "lost").map(|i| i.text.as_str());
     assert!(
@@ -328,7 +323,7 @@ fn pushed_for(forces: &[([f64; 3], fn(usize) -> bool)], [start, end]: [f64; 2]) 
     for run in &mut data {
         run.name = format!("{} 0 s", run.recording);
     }
-    diagnose(&model(), &data, &spare(), &once(), &|_| ()).unwrap()
+    diagnose(&model(), &data, &spare(), &Settings::default(), &|_| ()).unwrap()
 }
 
 /// One force in every fourth run.
@@ -399,13 +394,13 @@ fn a_law_that_unseen_runs_refute_is_not_in_the_headline_and_not_in_the_improved_
     };
     // The moment turns before the test runs are sailed.
     let (train, test) = (to_one_side(3e5, 30, 3), to_one_side(-3e5, 10, 4));
-    let d = diagnose(&base, &train, &test, &once(), &|_| ()).unwrap();
+    let d = diagnose(&base, &train, &test, &Settings::default(), &|_| ()).unwrap();
     let law = d.law.as_ref().unwrap();
     assert_eq!((d.verdict, law.grade), (Verdict::NotInCatalogue, LawGrade::Refuted), "{}", d.headline);
     assert!(d.headline.contains("refuted by unseen runs") && !d.headline.contains("] ="), "{}", d.headline);
     assert!(d.improved_is_base && d.model.find("asymmetric.N_0").is_err());
     // Two recordings give no interval.
-    let d = diagnose(&base, &train, &test[..2], &once(), &|_| ()).unwrap();
+    let d = diagnose(&base, &train, &test[..2], &Settings::default(), &|_| ()).unwrap();
     assert_eq!(d.law.map(|l| l.grade), Some(LawGrade::Exploratory));
     assert!(
         d.headline.contains("exploratory") && d.headline.contains("N [N m] = ") && d.improved_is_base,
@@ -423,7 +418,7 @@ fn a_force_outside_the_catalogue_is_written_as_a_law_that_unseen_runs_confirm_an
     truth.parameters[side].value = 0.01;
     let data = runs(&truth, &truth_noise(), 40, 3);
     let (train, test) = data.split_at(30);
-    let d = diagnose(&base, train, test, &once(), &|_| ()).unwrap();
+    let d = diagnose(&base, train, test, &Settings::default(), &|_| ()).unwrap();
     let law = d.law.as_ref().unwrap();
     assert_eq!((d.verdict, law.grade), (Verdict::NotInCatalogue, LawGrade::Confirmed), "{}", d.headline);
     let [term] = law.terms.as_slice() else { panic!("{:?}", law.terms) };
@@ -440,7 +435,7 @@ fn a_force_outside_the_catalogue_is_written_as_a_law_that_unseen_runs_confirm_an
     assert!(!d.improved_is_base && d.held_out.as_ref().is_some_and(|h| h.improvement > Some(0.2)), "{:?}", d.held_out);
     let written = d.model.parameters[d.model.find("asymmetric.Y_u_absu").unwrap()].value;
     assert!((written / 0.01 - 1.0).abs() < 0.2, "{written}");
-    let again = diagnose(&d.model, train, test, &once(), &|_| ()).unwrap();
+    let again = diagnose(&d.model, train, test, &Settings::default(), &|_| ()).unwrap();
     assert_eq!((again.verdict, again.law.is_none()), (Verdict::NothingMissing, true), "{}", again.headline);
 }
 
@@ -457,7 +452,7 @@ fn a_force_in_one_part_of_the_water_is_not_named_weather() {
         run.initial[1] += 3000.0;
         run.measured.iter_mut().for_each(|m| add(m, 1, 3000.0));
     }
-    let d = diagnose(&model(), &data, &spare(), &once(), &|_| ()).unwrap();
+    let d = diagnose(&model(), &data, &spare(), &Settings::default(), &|_| ()).unwrap();
     assert_eq!((d.verdict, d.findings.len()), (Verdict::NotInCatalogue, 0), "{}", d.headline);
     let place = d.location.place.as_ref().unwrap();
     assert!(place.p < 1e-10 && place.east[1] > 2000.0 && place.force[0] > 1e4, "{place:?}");
@@ -478,7 +473,7 @@ fn an_error_of_the_log_is_named_before_a_thruster_that_leads_the_ranking() {
         if i.is_multiple_of(3) && (40.0..120.0).contains(&t) { side } else { 0.0 }
     };
     let data = commanded(&truth, &truth_noise(), 30, 17, &command);
-    let d = diagnose(&base, &data, &[], &once(), &|_| ()).unwrap();
+    let d = diagnose(&base, &data, &[], &Settings::default(), &|_| ()).unwrap();
     assert_eq!(d.ranking[0].mechanism, "thruster");
     let named: Vec<&str> = d.findings.iter().map(|f| f.mechanism.as_str()).collect();
     assert_eq!(named.first(), Some(&"log_scale"), "{}", d.headline);
@@ -500,7 +495,7 @@ fn a_ship_with_unlike_sides_is_distinguished_from_a_symmetric_one() {
         let i = truth.find("flow.asymmetry").unwrap();
         truth.parameters[i].value = asymmetry;
         let data = runs(&truth, &truth_noise(), 30, 13);
-        diagnose(&alike, &data, &[], &once(), &|_| ()).unwrap()
+        diagnose(&alike, &data, &[], &Settings::default(), &|_| ()).unwrap()
     };
     let (single, twin) = (of(-0.12), of(0.0));
     // The difference belongs to the ship; no physics is missing for it.

@@ -249,7 +249,7 @@ mod tests {
     use crate::diagnose::example::{erring, erring_as, finding, made_by_euler, model, runs, with};
 
     fn without_repetitions() -> Settings {
-        Settings { nuisance: false, repeat: false, ..Settings::default() }
+        Settings { nuisance: false, ..Settings::default() }
     }
 
     #[test]

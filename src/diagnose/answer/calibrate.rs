@@ -166,7 +166,7 @@ mod tests {
 
     #[test]
     fn a_current_is_found_again_in_simulated_studies_and_nothing_where_there_is_none() -> Result<(), DiagnoseError> {
-        let settings = Settings { nuisance: false, repeat: false, calibrate: 3, ..Settings::default() };
+        let settings = Settings { nuisance: false, calibrate: 3, ..Settings::default() };
         let truth = runs(&with(&[("current.north", 0.3)]), 16);
         let d = crate::diagnose::diagnose(&model(), &truth[..12], &truth[12..], &settings, &|_| ())?;
         let rates = d.error_rates.unwrap();

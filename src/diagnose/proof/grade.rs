@@ -12,8 +12,8 @@ pub enum Grade {
     Confirmed,
     /// It is significant on the training runs; unseen runs do not decide, or there are none.
     Suspected,
-    /// Unseen runs are worse with it by log-likelihood or free simulation, the interval below zero: it is not named and not written to the
-    /// improved model.
+    /// Unseen runs are worse with it by log-likelihood or, by more than matters, by free simulation, the interval below zero: it is not named
+    /// and not written to the improved model.
     Refuted,
     /// Unseen runs are not worse with it by itself, but with all that was found together, and it does least for them of what was found: it is
     /// neither named nor written.
@@ -67,6 +67,11 @@ impl GainTest {
     pub(in crate::diagnose) fn is_below_zero(&self) -> bool {
         self.ci95.is_some_and(|[_, high]| high < 0.0)
     }
+
+    /// Of a free simulation, a share of its error: whether it is worse significantly, and by more than matters.
+    pub(in crate::diagnose) fn is_materially_worse(&self) -> bool {
+        self.is_below_zero() && self.gain < -MATERIAL_SHARE
+    }
 }
 
 /// What is known of one finding beside its significance.
@@ -103,7 +108,7 @@ impl FindingTests {
     /// Whether unseen runs are significantly worse with it by one measure at least: what simulates them worse is no improvement, however
     /// likely it makes them, and what one measure refutes is not named.
     pub fn is_refuted(&self) -> bool {
-        refute(&[self.likelihood, self.prediction, self.agreement])
+        refute(self.likelihood, self.prediction, self.agreement)
     }
 
     /// Whether it is too small to matter: a clock by the sensor's own resolution, a lag by that or by how little it changes predictions, all
@@ -128,9 +133,10 @@ pub enum Shift {
     OfLag(f64),
 }
 
-/// Whether unseen runs are significantly worse by one measure.
-fn refute(measures: &[Option<GainTest>]) -> bool {
-    measures.iter().flatten().any(GainTest::is_below_zero)
+/// Whether unseen runs are significantly worse by one measure; a free simulation that differs by less than matters refutes nothing.
+fn refute(likelihood: Option<GainTest>, prediction: Option<GainTest>, agreement: Option<GainTest>) -> bool {
+    [likelihood, agreement].iter().flatten().any(GainTest::is_below_zero)
+        || prediction.is_some_and(|g| g.is_materially_worse())
 }
 
 /// Whether unseen runs are significantly better by one measure, and worse by none, of log-likelihood, free simulation and, for an error of a
@@ -158,7 +164,7 @@ pub enum LawGrade {
 impl LawGrade {
     /// The grade that gains on unseen runs give.
     pub fn new(likelihood: Option<GainTest>, prediction: Option<GainTest>) -> Self {
-        if refute(&[likelihood, prediction]) {
+        if refute(likelihood, prediction, None) {
             Self::Refuted
         } else if confirm(likelihood, prediction, None) {
             Self::Confirmed
@@ -297,6 +303,12 @@ mod tests {
             };
             assert_eq!(LawGrade::new(likelihood, prediction), expected, "{likelihood:?} {prediction:?}");
         }
+        // Worse by a hair, however significantly, is neither an improvement nor a refutation.
+        let hair = Some(GainTest { gain: -0.02, ci95: Some([-0.03, -0.01]) });
+        assert_eq!(grade(&FindingTests { prediction: hair, ..sound() }), Grade::Suspected);
+        assert_eq!(LawGrade::new(BETTER, hair), LawGrade::Exploratory);
+        let share = Some(GainTest { gain: -0.06, ci95: Some([-0.08, -0.04]) });
+        assert_eq!(grade(&FindingTests { prediction: share, ..sound() }), Grade::Refuted);
         assert_eq!(LawGrade::new(BETTER, UNDECIDED), LawGrade::Confirmed);
         assert_eq!(LawGrade::new(BETTER, WORSE), LawGrade::Refuted);
         assert_eq!(LawGrade::new(None, None), LawGrade::Exploratory);

@@ -182,7 +182,7 @@ pub fn weakest_together(question: &Question, kept: &Kept, weights: &mut [Weight]
     let written = |e: &Estimate| tests.problem(question.settings).inside_bounds(e);
     let [base, found] = [&tests.fit.estimate, &kept.selection.estimate].map(written);
     let proof = FindingProof::new(&base.model, &found.model, &found.noise, tests.fit.integration, held_out, judging);
-    let simulated = proof.prediction().is_some_and(|g| g.is_below_zero());
+    let simulated = proof.prediction().is_some_and(|g| g.is_materially_worse());
     if !simulated && !proof.likelihood().is_some_and(|g| g.is_below_zero()) {
         return None;
     }

@@ -64,6 +64,8 @@ impl AuditedRuns {
 pub struct BaseFit {
     /// Its estimate.
     pub estimate: Estimate,
+    /// The same within bounds and constraints, where it is known.
+    pub within: Option<Estimate>,
     /// The prior of every noise estimate.
     pub prior: NoisePrior,
     /// The runs, without what the filter cannot follow.
@@ -99,7 +101,7 @@ impl BaseFit {
         (question.progress)("auditing recordings and integration step");
         let mut admission = admit(&base.model, integration, &base.noise, &kept, &at);
         admission.issues.extend(issues);
-        Self { estimate: base, prior, runs: kept, integration, admission }
+        Self { estimate: base, within: None, prior, runs: kept, integration, admission }
             .read_as_euler()
             .settled(question.settings)
             .with_backwards()
@@ -114,6 +116,7 @@ impl BaseFit {
             let solved = problem.written(estimate);
             if solved.log_posterior > estimate.log_posterior {
                 self.estimate = problem.again(&solved, SETTLE);
+                self.within = Some(solved);
             }
         }
         self

@@ -74,6 +74,7 @@ impl BaseTests {
             self.fit.runs[w.index].disturbed.push(w.samples);
         }
         self.fit.estimate = self.problem(settings).again(&self.fit.estimate, SETTLE);
+        self.fit.within = None;
         let BaseFit { estimate, runs, integration, .. } = &self.fit;
         self.screen = screen(estimate, *integration, runs, &self.candidates);
         self.location.regions = locate(estimate, *integration, runs).regions;

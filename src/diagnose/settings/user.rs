@@ -77,7 +77,7 @@ impl Default for Settings {
             nuisance: true,
             substeps: 1,
             seed: 20250226,
-            repeat: true,
+            repeat: false,
             calibrate: 0,
             judging: judging(),
             constraints: ConstraintSettings::default(),

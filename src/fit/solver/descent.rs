@@ -40,6 +40,10 @@ const BARRIER_SHARE: f64 = 1e-3;
 const NEAR_BARRIER_SHARE: f64 = 1e-6;
 const NEAR_PUSH: f64 = 1e-8;
 
+/// How far it is pushed where no multipliers are known: Ipopt sets those of bounds to 1, and from nearer bounds it takes dozens of steps until
+/// they belong to the barrier.
+const NEAR_PUSH_ALONE: f64 = 1e-4;
+
 /// Iterations in a row after which an objective that changes no more ends a solve.
 const SETTLED_ITERATIONS: i32 = 2;
 
@@ -233,7 +237,8 @@ impl Task<'_> {
         if from.near {
             let pushes = ["bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac"];
             let warm = ["", "warm_start_"].into_iter().flat_map(|kind| pushes.map(|name| format!("{kind}{name}")));
-            extra.extend(warm.map(|name| number(&name, NEAR_PUSH)));
+            let push = if from.multipliers.is_some() { NEAR_PUSH } else { NEAR_PUSH_ALONE };
+            extra.extend(warm.map(|name| number(&name, push)));
         }
         Options {
             tolerance: stage.tolerance,

@@ -9,8 +9,8 @@
 //!
 //! is a smooth function of the parameters; the filter's sensitivities are exactly its derivatives, and the Fisher information is its
 //! Gauss-Newton matrix. Ipopt minimises it within constraints and bounds; then the noise is estimated anew by maximum likelihood, the
-//! gains follow, and it is minimised again, until the log-posterior rises no more. With that noise the gains are then renewed alone, until f
-//! falls no more: noise and parameters in turn approach each other by a sixth of the way a round, gains alone by six sevenths. Where it ends,
+//! gains follow, and it is minimised again, until the log-posterior rises no more; near the optimum each of these solves takes a few steps.
+//! With that noise the gains are then renewed alone, until f falls no more. Where it ends,
 //! the scores of the filter, which are unbiased at the true parameters whatever the gains, are zero in the directions that no constraint
 //! blocks.
 //!
@@ -48,6 +48,10 @@ const ROUNDS: usize = 30;
 /// Rounds up to which a solve takes at most so many iterations: with fixed gains the objective far from where they were made is another
 /// one, and what is gained there is lost when they are renewed.
 const SHORT: [(usize, usize); 2] = [(3, 4), (6, 16)];
+
+/// Iterations of a solve near the optimum before gains and noise are made anew: f at fixed gains is nearly quadratic there, and what more steps
+/// gain is lost when the gains are renewed.
+const CLOSE: usize = 4;
 
 /// Rise of the log-posterior in a round below which gains and noise are settled: less than a third of a likelihood unit turns no comparison.
 const SETTLED: f64 = 0.3;
@@ -154,6 +158,8 @@ struct Reached {
 struct Rounds {
     reached: Reached,
     multipliers: Option<Multipliers>,
+    /// Whether they are near the optimum.
+    near: bool,
     count: usize,
 }
 
@@ -173,7 +179,7 @@ impl<'t> Task<'t> {
         let posterior = Posterior { task: self, runs, free, noise_prior: NoisePrior::around(&first) };
         let reached = posterior.reached(&self.start, &first);
         let start_log_posterior = reached.value;
-        let mut rounds = Rounds { reached, multipliers: None, count: 0 };
+        let mut rounds = Rounds { reached, multipliers: None, near: false, count: 0 };
         let few = stages::drawn(runs);
         if let Some(few) = &few {
             self.approach_by_likelihood(&posterior, few, &priors, &mut rounds, &mut shared)?;
@@ -197,7 +203,7 @@ impl<'t> Task<'t> {
                 break;
             };
             let reached = posterior.reached(&lower, noise);
-            rounds = Rounds { reached, multipliers: None, count: rounds.count };
+            rounds = Rounds { reached, multipliers: None, near: false, count: rounds.count };
             descent = self.settled(&posterior, &priors, &[], &mut rounds, &mut shared)?;
         }
         let Rounds { reached, count, .. } = rounds;
@@ -221,7 +227,7 @@ impl<'t> Task<'t> {
         let Posterior { task, free, noise_prior, .. } = posterior;
         let of_few = Posterior { task, runs: few, free: free.clone(), noise_prior: *noise_prior };
         let reached = of_few.reached(&rounds.reached.p, &rounds.reached.noise);
-        let mut near = Rounds { reached, multipliers: None, count: 0 };
+        let mut near = Rounds { reached, multipliers: None, near: false, count: 0 };
         let before = std::mem::take(&mut shared.work);
         self.with_noise(&of_few, priors, &SHORT, &mut near, shared)?;
         let own = std::mem::replace(&mut shared.work, before);
@@ -277,7 +283,8 @@ impl<'t> Task<'t> {
         Ok(descent)
     }
 
-    /// Rounds of gains, parameters and noise until the log-posterior rises no more; the first of them are `short`.
+    /// Rounds of gains, parameters and noise until the log-posterior rises no more; the first of them are `short`, and those near the optimum.
+    /// Gains and noise of where the last one ended are left to what follows.
     fn with_noise(
         &self,
         posterior: &Posterior,
@@ -289,12 +296,17 @@ impl<'t> Task<'t> {
         let mut round = 0;
         loop {
             round += 1;
-            let most = short.iter().find(|(until, _)| round <= *until).map(|(_, most)| *most);
-            let (mut descent, _) = self.round(posterior, priors, most, rounds, shared)?;
+            let far = short.iter().find(|(until, _)| round <= *until).map(|(_, most)| *most);
+            let most = far.or(rounds.near.then_some(CLOSE));
+            let (mut descent, fall) = self.round(posterior, priors, most, rounds, shared)?;
             let Reached { noise, value: before, .. } = &rounds.reached;
             let next = posterior.reached(&descent.p, noise);
-            let settled = most.is_none() && next.value - before < SETTLED;
-            if next.value.is_finite() && (next.value >= *before || most.is_some() || round == 1) {
+            let rise = next.value - before;
+            // A few steps that end far from the optimum, or above where they began since that was not within limits, have not arrived.
+            let arrived = most.is_none() || descent.optimum.is_some() || far.is_none() && fall > -SETTLED;
+            let settled = arrived && rise < SETTLED;
+            rounds.near |= most.is_none();
+            if next.value.is_finite() && (rise >= 0.0 || most.is_some() || round == 1) {
                 rounds.reached = next;
             }
             if settled || round >= ROUNDS || shared.watch.is_over() {
@@ -323,11 +335,13 @@ impl<'t> Task<'t> {
         if posterior.runs.len() < self.runs.len() {
             stage.part = FEW;
         }
-        let from = From { p, near: rounds.multipliers.is_some(), multipliers: rounds.multipliers.take() };
+        let near = rounds.near || rounds.multipliers.is_some();
+        let from = From { p, near, multipliers: rounds.multipliers.take() };
         let before = stage.total(p);
         let descent = self.descend(&stage, from, &mut Curvature::unknown(p.len()), shared)?;
         let fall = before.zip(stage.total(&descent.p)).map_or(f64::NAN, |(before, after)| before - after);
-        rounds.multipliers = descent.optimum.as_ref().map(|(_, multipliers)| multipliers.clone());
+        let of_last = || descent.last.as_ref().filter(|_| most.is_some()).map(|last| &last.multipliers);
+        rounds.multipliers = descent.optimum.as_ref().map(|(_, own)| own).or_else(of_last).cloned();
         Ok((descent, fall))
     }
 
@@ -393,7 +407,7 @@ pub(crate) fn within_limits(
     let posterior = Posterior { task: &task, runs, free, noise_prior: *noise_prior };
     let value = posterior.log_density(&task.start, &found.noise);
     let reached = Reached { p: task.start.clone(), noise: found.noise, value };
-    let mut rounds = Rounds { reached, multipliers: None, count: 0 };
+    let mut rounds = Rounds { reached, multipliers: None, near: true, count: 0 };
     let end = task.settled(&posterior, &priors, &[], &mut rounds, &mut shared)?;
     task.check_feasible(&end)?;
     let Reached { p, noise, .. } = rounds.reached;

@@ -53,7 +53,7 @@ pub fn run() -> Result<Diagnosed, RealError> {
     let hull = Hull::open("esso_osaka")?;
     let kinematics = Agreement::of_study(&hull, SPAN)?;
     // The repetitions that show whether an answer is stable would take seven times as long; `trimtab diagnose` makes them.
-    let settings = Settings { repeat: false, ..Settings::default() };
+    let settings = Settings::default();
     let (train, test) = (runs(&hull, Split::Train)?, runs(&hull, Split::Test)?);
     let calm = hull.model("model.toml")?;
     let mut cases =

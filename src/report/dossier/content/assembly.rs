@@ -125,7 +125,7 @@ fn causes_missing(d: &Dossier) -> Vec<String> {
     let Some(causes) = &d.causes else {
         return when(true, "no diagnosis was made or given: no cause of error was looked for");
     };
-    let text = "the diagnosis was not repeated on changed recordings: the stability of what it names is not known";
+    let text = "the diagnosis was not repeated on changed recordings (`--repeat`): the stability of what it names is not known";
     when(causes.stability.is_null() && !causes.found.is_empty(), text)
 }
 
