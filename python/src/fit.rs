@@ -226,7 +226,7 @@ impl Fit {
             interval: e.interval.map(|[low, high]| (low, high)),
             at_bound: e.at_bound,
         };
-        self.inner.told().into_iter().map(of).collect()
+        self.inner.reported().into_iter().map(of).collect()
     }
 
     fn __getitem__(&self, name: &str) -> PyResult<Estimate> {

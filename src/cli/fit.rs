@@ -266,7 +266,7 @@ pub fn write(output: &mut Output, start: &Model, fit: &Fit, speeds: [f64; 2]) ->
     // A file does not depend on the terminal it was made at.
     output.file("fit.txt", at_width(USUAL, || fit.report()).as_bytes());
     let number = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
-    let rows = fit.told().into_iter().map(|e| {
+    let rows = fit.reported().into_iter().map(|e| {
         let [low, high] = e.interval.map_or([None, None], |i| i.map(Some));
         [
             e.name.clone(),

@@ -154,10 +154,10 @@ pub struct Fit {
 
 impl Fit {
     /// The estimates as they are reported, zero where only rounding is left.
-    pub fn told(&self) -> Vec<Estimate> {
+    pub fn reported(&self) -> Vec<Estimate> {
         let reported = |e: &Estimate| {
             let parameter = self.model.index(&e.name).map(|i| &self.model.parameters[i]);
-            let whole = |x: f64| parameter.map_or(x, |p| p.told(x));
+            let whole = |x: f64| parameter.map_or(x, |p| p.reported(x));
             Estimate {
                 start: whole(e.start),
                 value: whole(e.value),

@@ -14,16 +14,16 @@ pub const Z: usize = 15;
 /// A symmetric matrix over the filter state, of which the entries `[i][j]` with `j <= i` are kept.
 pub type Square<S> = [[S; Z]; Z];
 
-/// The correction of the filter state by a measurement.
+/// A measurement, by how it corrects the filter state.
 #[derive(Clone, Copy, Debug)]
-pub struct Told<S> {
+pub struct Measurement<S> {
     /// The gain.
     pub gain: [S; Z],
     /// The covariance of the filter state with it.
     pub ph: [S; Z],
 }
 
-impl<S: Scalar> Told<S> {
+impl<S: Scalar> Measurement<S> {
     /// Nothing.
     pub fn nothing() -> Self {
         Self { gain: [S::zero(); Z], ph: [S::zero(); Z] }
@@ -32,10 +32,10 @@ impl<S: Scalar> Told<S> {
 
 /// Writes a row of the covariance after the correction `before`, which is not in `p` yet.
 #[inline(always)]
-fn row<S: Scalar>(p: &Square<S>, before: Option<&Told<S>>, place: usize, out: &mut [S; Z]) {
+fn row<S: Scalar>(p: &Square<S>, before: Option<&Measurement<S>>, place: usize, out: &mut [S; Z]) {
     (0..=place).for_each(|i| out[i] = p[place][i]);
     (place + 1..Z).for_each(|i| out[i] = p[i][place]);
-    if let Some(Told { gain, ph }) = before {
+    if let Some(Measurement { gain, ph }) = before {
         let (own_gain, own_ph) = (gain[place], ph[place]);
         (0..=place).for_each(|i| out[i] -= own_gain * ph[i]);
         (place + 1..Z).for_each(|i| out[i] -= gain[i] * own_ph);
@@ -44,8 +44,14 @@ fn row<S: Scalar>(p: &Square<S>, before: Option<&Told<S>>, place: usize, out: &m
 
 /// Writes the sum of two rows of the covariance, `one < two`, each as `row` has it.
 #[inline(always)]
-pub fn sum_of_rows<S: Scalar>(p: &Square<S>, before: Option<&Told<S>>, one: usize, two: usize, sum: &mut [S; Z]) {
-    let Some(Told { gain, ph }) = before else {
+pub fn sum_of_rows<S: Scalar>(
+    p: &Square<S>,
+    before: Option<&Measurement<S>>,
+    one: usize,
+    two: usize,
+    sum: &mut [S; Z],
+) {
+    let Some(Measurement { gain, ph }) = before else {
         (0..=one).for_each(|i| sum[i] = p[one][i] + p[two][i]);
         (one + 1..=two).for_each(|i| sum[i] = p[i][one] + p[two][i]);
         (two + 1..Z).for_each(|i| sum[i] = p[i][one] + p[i][two]);
@@ -61,7 +67,7 @@ pub fn sum_of_rows<S: Scalar>(p: &Square<S>, before: Option<&Told<S>>, one: usiz
 #[inline(always)]
 pub fn sum_along<S: Scalar + PartialEq>(
     p: &Square<S>,
-    before: Option<&Told<S>>,
+    before: Option<&Measurement<S>>,
     slopes: &[S; STATES],
     more: usize,
     sum: &mut [S; Z],
@@ -77,7 +83,7 @@ pub fn sum_along<S: Scalar + PartialEq>(
 
 /// Takes `gain ph'` out of the covariance: the correction by a measurement.
 #[inline(always)]
-pub fn correct<S: Scalar>(p: &mut Square<S>, Told { gain, ph }: &Told<S>) {
+pub fn correct<S: Scalar>(p: &mut Square<S>, Measurement { gain, ph }: &Measurement<S>) {
     // Each row by itself, so that the loop along it has a fixed length.
     macro_rules! rows {
         ($($i:literal)*) => { $((0..=$i).for_each(|l| p[$i][l] -= gain[$i] * ph[l]);)* };
@@ -87,7 +93,7 @@ pub fn correct<S: Scalar>(p: &mut Square<S>, Told { gain, ph }: &Told<S>) {
 
 /// Corrects by two measurements, one after the other: each entry is loaded and stored once for both.
 #[inline(always)]
-pub fn correct_twice<S: Scalar>(p: &mut Square<S>, [one, two]: &[Told<S>; 2]) {
+pub fn correct_twice<S: Scalar>(p: &mut Square<S>, [one, two]: &[Measurement<S>; 2]) {
     // A few columns at a time, whose covariances with both measurements stay in registers.
     columns::<S, 0>(p, one, two);
     columns::<S, WIDE>(p, one, two);
@@ -99,8 +105,8 @@ const WIDE: usize = Z / 3;
 
 /// Corrects the columns from `FROM` on by two measurements.
 #[inline(always)]
-fn columns<S: Scalar, const FROM: usize>(p: &mut Square<S>, one: &Told<S>, two: &Told<S>) {
-    let [a, b]: [[S; WIDE]; 2] = [one, two].map(|told| std::array::from_fn(|c| told.ph[FROM + c]));
+fn columns<S: Scalar, const FROM: usize>(p: &mut Square<S>, one: &Measurement<S>, two: &Measurement<S>) {
+    let [a, b]: [[S; WIDE]; 2] = [one, two].map(|one| std::array::from_fn(|c| one.ph[FROM + c]));
     macro_rules! rows {
         ($($i:literal)*) => { $(
             let (gain_1, gain_2) = (one.gain[$i], two.gain[$i]);
@@ -313,7 +319,7 @@ mod tests {
             assert!((0..Z).all(|c| sum[c] == full()[i][c] + full()[j][c]));
         }
         let gain: [f64; Z] = std::array::from_fn(|i| 0.1 * i as f64);
-        correct(&mut p, &Told { gain, ph: full()[4] });
+        correct(&mut p, &Measurement { gain, ph: full()[4] });
         for i in 0..Z {
             assert!((0..=i).all(|l| (p[i][l] - full()[i][l] + gain[i] * full()[4][l]).abs() < 1e-12));
         }
@@ -321,22 +327,24 @@ mod tests {
 
     #[test]
     fn two_corrections_at_once_have_the_bits_of_one_after_the_other() {
-        let told: [Told<f64>; 2] = [0.1, 0.7]
-            .map(|by| Told { gain: full()[5].map(|g| by / (1.0 + g * g)), ph: full()[8].map(|h| h / (3.0 + by)) });
+        let measurements: [Measurement<f64>; 2] = [0.1, 0.7].map(|by| Measurement {
+            gain: full()[5].map(|g| by / (1.0 + g * g)),
+            ph: full()[8].map(|h| h / (3.0 + by)),
+        });
         let (mut each, mut both) = (full(), full());
-        correct(&mut each, &told[0]);
+        correct(&mut each, &measurements[0]);
         let slopes = [0.5, 0.0, 1.0, -2.0, 0.0, 0.1];
         for more in 9..Z {
             let [mut after, mut expected] = [[f64::NAN; Z]; 2];
-            sum_of_rows(&both, Some(&told[0]), more - 9, more, &mut after);
+            sum_of_rows(&both, Some(&measurements[0]), more - 9, more, &mut after);
             sum_of_rows(&each, None, more - 9, more, &mut expected);
             assert_eq!(after, expected, "{more}");
-            sum_along(&both, Some(&told[0]), &slopes, more, &mut after);
+            sum_along(&both, Some(&measurements[0]), &slopes, more, &mut after);
             sum_along(&each, None, &slopes, more, &mut expected);
             assert_eq!(after, expected, "{more}");
         }
-        correct(&mut each, &told[1]);
-        correct_twice(&mut both, &told);
+        correct(&mut each, &measurements[1]);
+        correct_twice(&mut both, &measurements);
         assert_eq!(both, each);
     }
 

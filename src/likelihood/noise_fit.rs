@@ -1,7 +1,7 @@
 //! The estimate of the noise by maximum likelihood on linearised runs, and a first guess of it from the recordings alone.
 //! The ship's parameters are fixed: they are estimated elsewhere, in turn with the noise.
 
-use super::covariance::{Discrete, Told, Z, correct, correct_twice, initial, predict, sum_along, sum_of_rows};
+use super::covariance::{Discrete, Measurement, Z, correct, correct_twice, initial, predict, sum_along, sum_of_rows};
 use super::filter::{Tangent, boost};
 use super::noise::{GROUP_OF, NOISE_PARAMETERS, Noise, NoisePrior, NoiseScore, SensorNoise};
 use super::optimise::{Outcome, Proposal};
@@ -157,13 +157,13 @@ fn innovations<L: Linearised>(
     let samples = along.samples();
     let mut step = Step::zero();
     // The corrections by measurements of a sample: the covariance is corrected by two at a time, so that one may wait for the next.
-    let mut told = [Told::nothing(); 2];
+    let mut measurements = [Measurement::nothing(); 2];
     for k in 0..samples {
         let mut waiting = false;
         for j in 0..STATES {
             let Some((y, present)) = along.measured(k, j) else { continue };
             let slopes = along.report(k, j);
-            let [first, second] = &mut told;
+            let [first, second] = &mut measurements;
             let (before, own) = if waiting { (Some(&*first), second) } else { (None, first) };
             match &slopes {
                 Some(slopes) => sum_along(&p, before, slopes, 9 + j, &mut own.ph),
@@ -183,13 +183,13 @@ fn innovations<L: Linearised>(
                 z[i] += own.gain[i] * error;
             }
             if waiting {
-                correct_twice(&mut p, &told);
+                correct_twice(&mut p, &measurements);
             }
             waiting = !waiting;
             take(Innovation { error, variance }, present);
         }
         if waiting {
-            correct(&mut p, &told[0]);
+            correct(&mut p, &measurements[0]);
         }
         if k + 1 < samples {
             along.step(k, &mut step);

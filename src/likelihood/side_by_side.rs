@@ -1,7 +1,7 @@
 //! The filter over a few runs of one sample period side by side: correction by the measurements, sensitivities, prediction.
 //! What a step or a column does to the ship is computed elsewhere; the filter puts the runs together.
 
-use super::covariance::{self, Discrete, Square, Told, Z, initial, predict, sum_along, sum_of_rows};
+use super::covariance::{self, Discrete, Measurement, Square, Z, initial, predict, sum_along, sum_of_rows};
 use super::directions::{Directions, Prepared};
 use super::noise::Noise;
 use super::pass::{GATE, Gains, Pass, Tangent, Wanted, boost};
@@ -76,7 +76,7 @@ struct Filtering<'f, P: Plain> {
     mean: [P; Z],
     covariance: Square<P>,
     /// The corrections by two measurements, which the covariance takes at once.
-    told: [Told<P>; 2],
+    measurements: [Measurement<P>; 2],
     /// Whether it is still to be corrected by the first of them.
     waits: bool,
     /// The Jacobian of the rates at the last sample, where it is carried, and room for the next.
@@ -234,7 +234,7 @@ impl<'f, P: Plain> Filtering<'f, P> {
             smooth: directions.integration == Integration { method: Method::Rk4, substeps: 1 } && !wanted.exact,
             mean,
             covariance: initial(&noise, directions.model),
-            told: [Told::nothing(); 2],
+            measurements: [Measurement::nothing(); 2],
             waits: false,
             noise,
             ends,
@@ -322,7 +322,7 @@ impl<'f, P: Plain> Filtering<'f, P> {
             self.apply(k, j, &ph, used, out);
         }
         if std::mem::take(&mut self.waits) {
-            covariance::correct(&mut self.covariance, &self.told[0]);
+            covariance::correct(&mut self.covariance, &self.measurements[0]);
         }
         let linear = |j: usize| along(senses, &out.report, j, |l| reference[l]);
         let offset = std::array::from_fn(|j| report[j] - linear(j));
@@ -333,7 +333,7 @@ impl<'f, P: Plain> Filtering<'f, P> {
     #[inline(always)]
     fn covariance_with(&mut self, channel: usize, report: &[[P; STATES]; STATES]) -> [P; Z] {
         let p = &self.covariance;
-        let [first, second] = &mut self.told;
+        let [first, second] = &mut self.measurements;
         let (before, own) = if self.waits { (Some(&*first), second) } else { (None, first) };
         if self.directions.senses {
             sum_along(p, before, &report[channel], 9 + channel, &mut own.ph);
@@ -384,9 +384,9 @@ impl<'f, P: Plain> Filtering<'f, P> {
             self.mean[i] += gain * out.error[j];
         }
         if frozen.is_none() {
-            self.told[usize::from(self.waits)].gain = out.gain[j];
+            self.measurements[usize::from(self.waits)].gain = out.gain[j];
             if self.waits {
-                covariance::correct_twice(&mut self.covariance, &self.told);
+                covariance::correct_twice(&mut self.covariance, &self.measurements);
             }
             self.waits = !self.waits;
         }

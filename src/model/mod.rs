@@ -7,7 +7,7 @@ pub mod export;
 
 use crate::files::intact;
 use crate::files::suggestion;
-use crate::files::written::{Kind, line_at, read_text, read_toml, told};
+use crate::files::written::{Kind, joined, line_at, read_text, read_toml};
 use crate::parameter::{ParameterInfo, Start};
 use crate::physics::{Adjust, AnyTerm, Catalogue, Form, Group, Inertia, Number, TermInfo};
 use crate::ship::{COEFFICIENTS, Ship};
@@ -222,7 +222,7 @@ pub struct Parameter {
 impl Parameter {
     /// A value, an error or an end of an interval of this parameter as it is reported: what is a billionth of its scale or less, the
     /// rounding that an active constraint leaves, is zero.
-    pub fn told(&self, value: f64) -> f64 {
+    pub fn reported(&self, value: f64) -> f64 {
         if value.abs() <= 1e-9 * self.scale { 0.0 } else { value }
     }
 }
@@ -1070,7 +1070,7 @@ impl Model {
 /// The content of a model file.
 fn model_file(text: &str, path: &Path) -> Result<ModelFile, ModelError> {
     read_toml(text, Kind::Model).map_err(|mistakes| {
-        let (line, message) = told(mistakes, path);
+        let (line, message) = joined(mistakes, path);
         ModelError::Parse { path: path.to_path_buf(), line, message }
     })
 }
@@ -1104,7 +1104,7 @@ mod tests {
         let ship = Ship::read(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/experiments/ships/a.toml"))).unwrap();
         let model = Model::new(ship, "HD", Form::Regular, &[]).unwrap();
         let lift = &model.parameters[model.index("rudder.lift0").unwrap()];
-        assert_eq!([1.5e-16, -1.5e-16, 0.01, -3.0].map(|v| lift.told(v)), [0.0, 0.0, 0.01, -3.0]);
-        assert!(lift.told(f64::NAN).is_nan());
+        assert_eq!([1.5e-16, -1.5e-16, 0.01, -3.0].map(|v| lift.reported(v)), [0.0, 0.0, 0.01, -3.0]);
+        assert!(lift.reported(f64::NAN).is_nan());
     }
 }

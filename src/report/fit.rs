@@ -132,7 +132,7 @@ impl Fit {
     /// The estimates, and how their errors are to be read.
     fn table(&self) -> String {
         let mut table = Table::new(["parameter", "symbol", "unit", "start", "estimate", "std. error", "95 % interval"]);
-        for e in &self.told() {
+        for e in &self.reported() {
             table.row([
                 e.name.clone(),
                 e.symbol.to_string(),

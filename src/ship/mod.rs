@@ -9,7 +9,7 @@ pub(crate) mod rudder;
 pub mod state;
 pub mod units;
 
-use crate::files::written::{Kind, read_text, read_toml, told};
+use crate::files::written::{Kind, joined, read_text, read_toml};
 use crate::numerals::sig;
 use crate::units::GRAVITY;
 use actuator::Actuator;
@@ -287,7 +287,7 @@ impl Ship {
             if !absent.is_empty() && mistakes.iter().all(|m| m.message.contains(" is missing")) {
                 return ShipError::Missing { path: path.to_path_buf(), missing: absent.clone() };
             }
-            let (line, message) = told(mistakes, path);
+            let (line, message) = joined(mistakes, path);
             ShipError::Parse { path: path.to_path_buf(), line, message }
         })?;
         if !absent.is_empty() {

@@ -5,7 +5,7 @@ use super::error::StudyError;
 use super::file::RunEntry;
 use super::split::{SplitRule, UNNAMED, draw};
 use crate::files::plain;
-use crate::files::written::{Mistake, told};
+use crate::files::written::{Mistake, joined};
 use crate::recording::{Labels, Split};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -37,7 +37,7 @@ pub(super) fn label(
     shared_map: Option<&Path>,
 ) -> Result<(Vec<Listed>, Option<SplitRule>), StudyError> {
     let fail = |mistakes| {
-        let (line, message) = told(mistakes, path);
+        let (line, message) = joined(mistakes, path);
         StudyError::Parse { path: path.to_owned(), line, message }
     };
     let mistakes = mistakes(&entries, rule);

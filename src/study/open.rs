@@ -7,7 +7,7 @@ use super::listed::{Listed, label};
 use super::settings::window_settings;
 use super::split::{SplitBy, SplitRule};
 use super::table::read_table;
-use crate::files::written::{Kind, Mistake, line_at, near_file, read_text, read_toml, section, told};
+use crate::files::written::{Kind, Mistake, joined, line_at, near_file, read_text, read_toml, section};
 use crate::recording::{Channel, ColumnMap, Driven, Recording, Split, WindowSettings, Windows, key_line};
 use crate::ship::{Ship, ShipError};
 use rayon::prelude::*;
@@ -123,7 +123,7 @@ impl Study {
     fn without_runs(text: &str, path: &Path) -> Result<(Self, StudyFile), StudyError> {
         let folder = path.parent().unwrap_or(Path::new(""));
         let fail = |mistakes: Vec<Mistake>| {
-            let (line, message) = told(mistakes, path);
+            let (line, message) = joined(mistakes, path);
             StudyError::Parse { path: path.to_owned(), line, message }
         };
         let mut file: StudyFile =

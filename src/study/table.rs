@@ -4,7 +4,7 @@
 use super::error::StudyError;
 use super::file::RunEntry;
 use crate::files::suggestion;
-use crate::files::written::{Mistake, read_text, told};
+use crate::files::written::{Mistake, joined, read_text};
 use crate::recording::Split;
 use csv::StringRecord;
 use std::path::Path;
@@ -20,7 +20,7 @@ pub(super) fn read_table(path: &Path) -> Result<Vec<(usize, RunEntry)>, StudyErr
     let read = |source| StudyError::Read { path: path.to_owned(), what: "table of runs", source };
     let text = read_text(path).map_err(read)?;
     parse(&text).map_err(|mistakes| {
-        let (line, message) = told(mistakes, path);
+        let (line, message) = joined(mistakes, path);
         StudyError::Parse { path: path.to_owned(), line, message }
     })
 }

@@ -4,7 +4,7 @@
 use crate::support::{model, runs, truth_noise};
 use trimtab::diagnose::Settings;
 use trimtab::diagnose::evidence::candidate::Extent;
-use trimtab::diagnose::proof::baseline::{Refitted, Told, oracle};
+use trimtab::diagnose::proof::baseline::{GivenMechanism, Refitted, oracle};
 use trimtab::diagnose::proof::prove::mean_cvdm;
 use trimtab::likelihood::noise::Noise;
 use trimtab::model::Model;
@@ -77,7 +77,7 @@ fn the_criterion_mistakes_gusts_for_physics() {
 fn the_oracle_improves_unseen_runs_and_gives_none_for_a_mechanism_outside_the_catalogue() {
     let data = runs(&drifting(), &truth_noise(), 16, 7);
     let of = |name: &str, extent: Extent| {
-        let told = Told { mechanism: name.into(), extent };
+        let told = GivenMechanism { mechanism: name.into(), extent };
         oracle(&model(), &data[..12], &data[12..], &Settings::default(), &[told]).unwrap()
     };
     let everywhere = of("current", Extent::All).unwrap();

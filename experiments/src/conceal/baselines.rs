@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use trimtab::diagnose::evidence::candidate::Extent;
-use trimtab::diagnose::proof::baseline::{Told, oracle};
+use trimtab::diagnose::proof::baseline::{GivenMechanism, oracle};
 
 use super::campaign::plan::Planned;
 use super::error::ConcealError;
@@ -68,14 +68,14 @@ pub fn ask(study: &Path, manifest: &Manifest, wanted: Wanted) -> Result<Baseline
 }
 
 /// The concealed effects, in the names of the diagnosis.
-fn known(manifest: &Manifest) -> Vec<Told> {
+fn known(manifest: &Manifest) -> Vec<GivenMechanism> {
     let mut known = Vec::new();
     for answer in &manifest.answers {
         let extent = if manifest.spec.contrast { Extent::In(answer.sessions.clone()) } else { Extent::All };
         // A log through the water has no effect without the current.
         let needed = (answer.effect == "water_log").then_some("current");
         for mechanism in needed.into_iter().chain(answer.accepted.first().map(String::as_str)) {
-            known.push(Told { mechanism: mechanism.to_owned(), extent: extent.clone() });
+            known.push(GivenMechanism { mechanism: mechanism.to_owned(), extent: extent.clone() });
         }
     }
     known

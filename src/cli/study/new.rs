@@ -8,7 +8,7 @@ use crate::cli::shared::terminal::tell;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 use trimtab::files::suggestion;
-use trimtab::files::written::{Kind as Written, read_tables, read_text, told};
+use trimtab::files::written::{Kind as Written, joined, read_tables, read_text};
 use trimtab::files::{plain_cell, write_whole};
 use trimtab::numbers::numerals::sig;
 use trimtab::report::Table as Listing;
@@ -175,7 +175,7 @@ fn read(path: &Path) -> Result<Table, CliError> {
         ))
     })?;
     read_tables(&text, Written::Ship).map_err(|mistakes| {
-        let (line, message) = told(mistakes, path);
+        let (line, message) = joined(mistakes, path);
         CliError::Argument(format!("{}:{line}: {message}", path.display()))
     })
 }

@@ -196,7 +196,7 @@ const DIVERGED: f64 = 1e4;
 
 /// A mechanism that the oracle is given.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Told {
+pub struct GivenMechanism {
     /// Its name in the catalogue.
     pub mechanism: String,
     /// Where it acts.
@@ -214,12 +214,12 @@ pub fn oracle(
     runs: &[Run],
     held_out: &[Run],
     settings: &Settings,
-    given: &[Told],
+    given: &[GivenMechanism],
 ) -> Result<Option<f64>, ModelError> {
     let full = model.complete()?;
     let integration = settings.integration();
     let list = candidates(&full, &[]);
-    let of = |t: &Told| list.iter().find(|c| c.mechanism.name == t.mechanism);
+    let of = |t: &GivenMechanism| list.iter().find(|c| c.mechanism.name == t.mechanism);
     let Some(chosen) = given.iter().map(of).collect::<Option<Vec<_>>>() else { return Ok(None) };
     let first = guess(runs, &full);
     let prior = NoisePrior::around(&first);

@@ -22,7 +22,7 @@ impl Mistake {
 }
 
 /// The line of the first mistake, and one message of all: those after the first stand on lines of their own, each with its place.
-pub fn told(mut mistakes: Vec<Mistake>, path: &Path) -> (usize, String) {
+pub fn joined(mut mistakes: Vec<Mistake>, path: &Path) -> (usize, String) {
     mistakes.sort_by_key(|m| m.line);
     mistakes.dedup();
     let further = |m: &Mistake| format!("\n{}:{}: {}", path.display(), m.line, m.message);

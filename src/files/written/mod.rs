@@ -10,7 +10,7 @@ mod text;
 mod words;
 
 pub use kind::Kind;
-pub use mistake::{Mistake, line_at, told};
+pub use mistake::{Mistake, joined, line_at};
 pub use table::{read_tables, read_toml, section};
 pub use text::{bytes_of, near_file, read_text};
 pub use words::in_words;

@@ -132,7 +132,7 @@ fn mistake(line: usize, message: &str, way: &[Step]) -> Mistake {
         }
         Some(unknown) => {
             let of = key.map_or(String::new(), |key| format!("`{key}`: "));
-            Mistake::new(line, of + &unknown.told())
+            Mistake::new(line, of + &unknown.joined())
         }
         None => Mistake::new(line, words::plain(message, key.as_deref()) + quotes(message, way)),
     }
@@ -144,7 +144,7 @@ fn unquoted(unknown: &words::Unknown<'_>, way: &[Step]) -> String {
         [Step::Key(table), Step::Key(first), Step::Key(second)] if table == "parameters" && !first.contains('.') => {
             format!("write the name in quotes, as in \"{first}.{second}\" = ..., for it has a point in it")
         }
-        _ => unknown.told(),
+        _ => unknown.joined(),
     }
 }
 

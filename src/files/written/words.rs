@@ -50,7 +50,7 @@ pub(super) fn unknown(message: &str) -> Option<Unknown<'_>> {
 
 impl Unknown<'_> {
     /// What is wrong and what would be right.
-    pub(super) fn told(&self) -> String {
+    pub(super) fn joined(&self) -> String {
         let what = if self.is_key { "unknown key" } else { "unknown word" };
         let near = suggestion(self.found, self.known.iter().copied());
         let one = if self.is_key { "the keys here are" } else { "it must be one of" };
@@ -63,7 +63,7 @@ impl Unknown<'_> {
 
 /// What serde says of a value that is in no file, in the words of those who gave it, with the nearest of the known keys or words.
 pub fn in_words(message: &str) -> String {
-    unknown(message).map_or_else(|| plain(message, None), |unknown| unknown.told())
+    unknown(message).map_or_else(|| plain(message, None), |unknown| unknown.joined())
 }
 
 /// The key of which serde says that it is missing.

@@ -18,7 +18,7 @@
 
 use super::blank::Blank;
 use crate::files::suggestion;
-use crate::files::written::{Kind, Mistake, line_at, read_text, read_toml, told};
+use crate::files::written::{Kind, Mistake, joined, line_at, read_text, read_toml};
 use crate::recording::channel::{CHANNELS, Channel, ChannelInfo};
 use crate::recording::driven::Driven;
 use crate::recording::error::RecordingError;
@@ -362,7 +362,7 @@ impl ColumnMap {
     pub fn parse(text: &str, path: &Path) -> Result<Self, RecordingError> {
         let fail = |line, message| RecordingError::Map { path: path.to_owned(), line, message };
         let mut map: Self = read_toml(text, Kind::Columns).map_err(|mistakes| {
-            let (line, message) = told(mistakes.into_iter().map(channel_at_the_top).collect(), path);
+            let (line, message) = joined(mistakes.into_iter().map(channel_at_the_top).collect(), path);
             fail(line, message)
         })?;
         map.path = Some(path.to_owned());
@@ -371,7 +371,7 @@ impl ColumnMap {
         if mistakes.is_empty() {
             return Ok(map);
         }
-        let (line, message) = told(mistakes, path);
+        let (line, message) = joined(mistakes, path);
         Err(fail(line, message))
     }
 

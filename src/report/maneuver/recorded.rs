@@ -1,14 +1,14 @@
 //! Measures of recorded trials in words and numbers: over ground, through the water, and with the model.
 //! It converts units and computes nothing else.
 
-use super::tables::{Listed, Told, criteria_table};
+use super::tables::{Listed, PrintedUnit, criteria_table};
 use crate::evaluate::maneuver::{Measured, MeasuredTrial, Measures, Turning, Zigzag};
 use crate::numerals::{DASH, fixed, sig};
 use crate::report::table::Table;
 use crate::ship::Ship;
 
 /// A measure of one trial: its key, words, printed unit, and its values over ground, through the water and with the model.
-type Row = (&'static str, &'static str, Told, [Option<f64>; 3]);
+type Row = (&'static str, &'static str, PrintedUnit, [Option<f64>; 3]);
 
 fn rows(trial: &MeasuredTrial) -> Vec<Row> {
     let all = [
@@ -20,7 +20,7 @@ fn rows(trial: &MeasuredTrial) -> Vec<Row> {
         Measures::Turning(_) => Turning::ROWS,
         Measures::Zigzag(_) => Zigzag::ROWS,
     };
-    listed.iter().map(|(key, words, told)| (*key, *words, *told, all.map(|m| value(m?, key)))).collect()
+    listed.iter().map(|(key, words, printed)| (*key, *words, *printed, all.map(|m| value(m?, key)))).collect()
 }
 
 fn value(measures: &Measures, key: &str) -> Option<f64> {
@@ -38,8 +38,8 @@ pub fn recorded_table(ship: &Ship, trial: &MeasuredTrial) -> Table {
         [Some(name), Some(ground), water.then_some(through), Some(model)].into_iter().flatten()
     };
     let mut table = Table::new(columns(["measure", "over ground", "through water", "model"].map(str::to_owned)));
-    for (_, words, told, values) in rows(trial) {
-        let (unit, factor, decimals) = told.scale(ship.hull.lpp);
+    for (_, words, printed, values) in rows(trial) {
+        let (unit, factor, decimals) = printed.scale(ship.hull.lpp);
         let [ground, through, model] = values.map(|x| x.map_or(DASH.to_owned(), |x| fixed(x * factor, decimals)));
         table.row(columns([format!("{words} [{unit}]"), ground, through, model]));
     }
@@ -92,10 +92,10 @@ pub fn recorded_csv(trials: &[MeasuredTrial]) -> Table {
     let mut table = Table::new(header);
     let number = |x: Option<f64>| x.filter(|x| x.is_finite()).map_or(String::new(), |x| x.to_string());
     for t in trials {
-        for (key, _, told, values) in rows(t) {
+        for (key, _, printed, values) in rows(t) {
             let [ground, through, model] = values.map(number);
             let (at, side) = (t.at.to_string(), t.side.word());
-            table.row([&t.run, &t.name, side, &at, key, told.si(), &ground, &through, &model]);
+            table.row([&t.run, &t.name, side, &at, key, printed.si(), &ground, &through, &model]);
         }
     }
     table

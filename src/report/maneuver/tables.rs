@@ -9,7 +9,7 @@ use crate::ship::Ship;
 
 /// The unit in which a measure is printed.
 #[derive(Clone, Copy)]
-pub enum Told {
+pub enum PrintedUnit {
     /// Ship lengths.
     Lengths,
     /// Per cent.
@@ -24,7 +24,7 @@ pub enum Told {
     DegreesPerSecond,
 }
 
-impl Told {
+impl PrintedUnit {
     /// The SI unit that it is converted from.
     pub fn si(self) -> &'static str {
         match self {
@@ -53,75 +53,75 @@ impl Told {
 /// Trials whose measures make a table.
 pub trait Listed: Measured {
     /// Name of each measure, in words, and its printed unit, in the order of [`Measured::QUANTITIES`].
-    const ROWS: &'static [(&'static str, &'static str, Told)];
+    const ROWS: &'static [(&'static str, &'static str, PrintedUnit)];
 }
 
 impl Listed for Turning {
-    const ROWS: &'static [(&'static str, &'static str, Told)] = &[
-        ("advance", "advance", Told::Lengths),
-        ("transfer", "transfer", Told::Lengths),
-        ("tactical_diameter", "tactical diameter", Told::Lengths),
-        ("steady_diameter", "steady diameter", Told::Lengths),
-        ("speed_loss", "speed loss", Told::Percent),
-        ("drift", "drift", Told::Degrees),
-        ("time_90", "time to 90 deg", Told::Seconds),
-        ("time_180", "time to 180 deg", Told::Seconds),
-        ("nomoto_gain", "Nomoto K", Told::PerSecond),
-        ("nomoto_time", "Nomoto T", Told::Seconds),
+    const ROWS: &'static [(&'static str, &'static str, PrintedUnit)] = &[
+        ("advance", "advance", PrintedUnit::Lengths),
+        ("transfer", "transfer", PrintedUnit::Lengths),
+        ("tactical_diameter", "tactical diameter", PrintedUnit::Lengths),
+        ("steady_diameter", "steady diameter", PrintedUnit::Lengths),
+        ("speed_loss", "speed loss", PrintedUnit::Percent),
+        ("drift", "drift", PrintedUnit::Degrees),
+        ("time_90", "time to 90 deg", PrintedUnit::Seconds),
+        ("time_180", "time to 180 deg", PrintedUnit::Seconds),
+        ("nomoto_gain", "Nomoto K", PrintedUnit::PerSecond),
+        ("nomoto_time", "Nomoto T", PrintedUnit::Seconds),
     ];
 }
 
 impl Listed for Zigzag {
-    const ROWS: &'static [(&'static str, &'static str, Told)] = &[
-        ("overshoot_1", "overshoot 1", Told::Degrees),
-        ("overshoot_2", "overshoot 2", Told::Degrees),
-        ("overshoot_3", "overshoot 3", Told::Degrees),
-        ("initial_turning", "initial turning", Told::Lengths),
-        ("execute_2", "second execute", Told::Seconds),
-        ("execute_3", "third execute", Told::Seconds),
-        ("reach", "reach", Told::Seconds),
-        ("period", "period", Told::Seconds),
-        ("nomoto_gain", "Nomoto K", Told::PerSecond),
-        ("nomoto_time", "Nomoto T", Told::Seconds),
+    const ROWS: &'static [(&'static str, &'static str, PrintedUnit)] = &[
+        ("overshoot_1", "overshoot 1", PrintedUnit::Degrees),
+        ("overshoot_2", "overshoot 2", PrintedUnit::Degrees),
+        ("overshoot_3", "overshoot 3", PrintedUnit::Degrees),
+        ("initial_turning", "initial turning", PrintedUnit::Lengths),
+        ("execute_2", "second execute", PrintedUnit::Seconds),
+        ("execute_3", "third execute", PrintedUnit::Seconds),
+        ("reach", "reach", PrintedUnit::Seconds),
+        ("period", "period", PrintedUnit::Seconds),
+        ("nomoto_gain", "Nomoto K", PrintedUnit::PerSecond),
+        ("nomoto_time", "Nomoto T", PrintedUnit::Seconds),
     ];
 }
 
 impl Listed for PullOut {
-    const ROWS: &'static [(&'static str, &'static str, Told)] = &[
-        ("turning_rate", "yaw rate of the turn", Told::DegreesPerSecond),
-        ("residual_rate", "yaw rate left", Told::DegreesPerSecond),
-        ("decay_time", "time to 1/e", Told::Seconds),
+    const ROWS: &'static [(&'static str, &'static str, PrintedUnit)] = &[
+        ("turning_rate", "yaw rate of the turn", PrintedUnit::DegreesPerSecond),
+        ("residual_rate", "yaw rate left", PrintedUnit::DegreesPerSecond),
+        ("decay_time", "time to 1/e", PrintedUnit::Seconds),
     ];
 }
 
 impl Listed for Spiral {
-    const ROWS: &'static [(&'static str, &'static str, Told)] = &[
-        ("loop_width", "width of the loop", Told::Degrees),
-        ("loop_height", "height of the loop", Told::DegreesPerSecond),
-        ("neutral", "rudder in its middle", Told::Degrees),
+    const ROWS: &'static [(&'static str, &'static str, PrintedUnit)] = &[
+        ("loop_width", "width of the loop", PrintedUnit::Degrees),
+        ("loop_height", "height of the loop", PrintedUnit::DegreesPerSecond),
+        ("neutral", "rudder in its middle", PrintedUnit::Degrees),
     ];
 }
 
 impl Listed for Stopping {
-    const ROWS: &'static [(&'static str, &'static str, Told)] = &[
-        ("track_reach", "track reach", Told::Lengths),
-        ("head_reach", "head reach", Told::Lengths),
-        ("lateral_deviation", "lateral deviation", Told::Lengths),
-        ("heading_change", "heading change", Told::Degrees),
-        ("time", "time", Told::Seconds),
+    const ROWS: &'static [(&'static str, &'static str, PrintedUnit)] = &[
+        ("track_reach", "track reach", PrintedUnit::Lengths),
+        ("head_reach", "head reach", PrintedUnit::Lengths),
+        ("lateral_deviation", "lateral deviation", PrintedUnit::Lengths),
+        ("heading_change", "heading change", PrintedUnit::Degrees),
+        ("time", "time", PrintedUnit::Seconds),
     ];
 }
 
 /// The measures, a row a measure and a column a trial, each with its 95 % interval where it has one: `2.97 [2.85, 3.09]`.
 pub fn measures_table<M: Listed>(ship: &Ship, trials: &[Trial<M>]) -> Table {
     let mut table = Table::new(["measure".to_owned()].into_iter().chain(trials.iter().map(|t| t.name.clone())));
-    for (key, words, told) in M::ROWS {
-        let (unit, factor, decimals) = told.scale(ship.hull.lpp);
-        let told = |x: f64| fixed(x * factor, decimals);
+    for (key, words, printed) in M::ROWS {
+        let (unit, factor, decimals) = printed.scale(ship.hull.lpp);
+        let value = |x: f64| fixed(x * factor, decimals);
         let cell = |t: &Trial<M>| match (t.measures.quantity(key), t.intervals.get(key)) {
             (None, _) => "not reached".to_owned(),
-            (Some(x), None) => told(x),
-            (Some(x), Some([low, high])) => format!("{} [{}, {}]", told(x), told(*low), told(*high)),
+            (Some(x), None) => value(x),
+            (Some(x), Some([low, high])) => format!("{} [{}, {}]", value(x), value(*low), value(*high)),
         };
         table.row([format!("{words} [{unit}]")].into_iter().chain(trials.iter().map(cell)));
     }
@@ -133,8 +133,8 @@ pub fn measures_csv<M: Listed>(trials: &[Trial<M>]) -> Table {
     let mut table = Table::new(["trial", "side", "measure", "unit", "value", "low95", "high95"]);
     let number = |x: Option<f64>| x.filter(|x| x.is_finite()).map_or(String::new(), |x| x.to_string());
     for t in trials {
-        for (key, _, told) in M::ROWS {
-            let unit = told.si();
+        for (key, _, printed) in M::ROWS {
+            let unit = printed.si();
             let [low, high] = t.intervals.get(key).map_or([None, None], |ends| ends.map(Some));
             let value = number(t.measures.quantity(key));
             let cells = [&t.name, t.side.word(), key, unit, &value, &number(low), &number(high)];

@@ -22,7 +22,7 @@ pub use causes::Causes;
 pub use check::{Bound, Check};
 pub use claim::{Claim, Span};
 pub use document::{Dossier, Heading, SECTIONS};
-pub use particulars::{ChannelUse, Particular, Recorded, ShipPart, Told};
+pub use particulars::{ChannelUse, Particular, Recorded, RecordedDoubt, ShipPart};
 pub use structure::{Parameter, Structure, TermPart};
 pub use trials::Trials;
 pub use validation::Validation;

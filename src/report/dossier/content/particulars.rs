@@ -45,7 +45,7 @@ pub struct ChannelUse {
 
 /// A kind of doubt of the audit, with the number of recordings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Told {
+pub struct RecordedDoubt {
     /// How grave.
     pub severity: Severity,
     /// Name of the fault.
@@ -93,7 +93,7 @@ pub struct ShipPart {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub noise: Option<Value>,
     /// Warnings and errors of the audit.
-    pub doubts: Vec<Told>,
+    pub doubts: Vec<RecordedDoubt>,
 }
 
 impl ShipPart {
@@ -183,7 +183,7 @@ fn channels(audit: &StudyAudit) -> Vec<ChannelUse> {
 }
 
 /// The warnings and errors of an audit, each kind once, the gravest first.
-fn doubts(audit: &StudyAudit) -> Vec<Told> {
+fn doubts(audit: &StudyAudit) -> Vec<RecordedDoubt> {
     let mut kinds: BTreeMap<(std::cmp::Reverse<Severity>, &'static str), (BTreeSet<&str>, &Issue)> = BTreeMap::new();
     let own = audit.issues.iter().map(|i| (None, i));
     let all = own.chain(audit.recordings.iter().flat_map(|a| a.issues.iter().map(|i| (Some(a.run.as_str()), i))));
@@ -193,7 +193,7 @@ fn doubts(audit: &StudyAudit) -> Vec<Told> {
     }
     let doubt = |((severity, fault), (runs, issue)): (_, (BTreeSet<&str>, &Issue))| {
         let std::cmp::Reverse(severity) = severity;
-        Told { severity, fault, recordings: runs.len(), text: issue.text.clone() }
+        RecordedDoubt { severity, fault, recordings: runs.len(), text: issue.text.clone() }
     };
     kinds.into_iter().map(doubt).collect()
 }

@@ -85,7 +85,7 @@ impl Structure {
         };
         let parameter = |p: &crate::model::Parameter| Parameter {
             name: p.name.clone(),
-            value: p.told(p.value),
+            value: p.reported(p.value),
             unit: p.info.unit,
             error: error(&p.name),
             free: p.free,
