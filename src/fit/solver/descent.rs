@@ -33,6 +33,10 @@ pub(in crate::fit) const UNDETERMINED: f64 = 1e-12;
 /// Distance from a limit, in the sizes of rows, up to which a row is the solver's from the start.
 const NEAR_ROW: f64 = 0.1;
 
+/// Fall of the objective without a limit, in units of log-likelihood, below which the limit is not active: the optimum without it is a fifth of
+/// a standard error beyond it.
+const INFORMS: f64 = 0.02;
+
 /// Barrier parameter at the start over what the objective may fall by. A thousand constraints then weigh about as much as the cost.
 const BARRIER_SHARE: f64 = 1e-3;
 
@@ -257,15 +261,21 @@ impl Task<'_> {
     /// The active limits at a solution. Without the limit, whose multiplier is y and whose normal is a, the point would move by
     /// `y a' H^-1 a` across it (H the curvature of the objective), and that is more than its distance from it. An interior-point solution keeps
     /// a distance of the barrier parameter over y from an active limit, so that neither y nor the distance shows alone whether it is active.
+    /// The objective would fall by `y^2 a' H^-1 a / 2`: where that is next to nothing, along what the data do not determine, the limit says
+    /// nothing of the estimates.
     fn active_set(&self, stage: &Stage, p: &[f64], multipliers: &Multipliers) -> ActiveSet {
         let n = p.len();
         let yielding = stage.local(p).map(|local| {
             let ridge = UNDETERMINED * local.gauss_newton.diagonal().max();
             let matrix = local.gauss_newton + DMatrix::identity(n, n) * ridge;
-            inverse(&matrix, &DMatrix::identity(n, n)).matrix
+            // M residuals of variance 2 f / M: a unit of log-likelihood.
+            let unit = 2.0 * local.value / self.cost.residuals().max(1) as f64;
+            (inverse(&matrix, &DMatrix::identity(n, n)).matrix, INFORMS * unit)
         });
-        let yielding = yielding.unwrap_or_else(|| DMatrix::identity(n, n));
-        let is_active = |multiplier: f64, along: f64, slack: f64| multiplier.abs() * along > slack.abs();
+        let (yielding, least) = yielding.unwrap_or_else(|| (DMatrix::identity(n, n), 0.0));
+        let is_active = |multiplier: f64, along: f64, slack: f64| {
+            multiplier.abs() * along > slack.abs() && 0.5 * multiplier * multiplier * along > least
+        };
         let rows = multipliers.constraints.iter().enumerate().filter(|(i, multiplier)| {
             let (row, normal) = (&self.rows[*i], self.normal(stage.scaling, *i));
             let value = row.value(p);
