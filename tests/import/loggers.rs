@@ -359,6 +359,20 @@ fn a_longitude_positive_to_the_west_mirrors_no_ship() {
         assert!(rudder[45] > 0.1 && rudder[60] < -0.1);
     }
     assert!(!notes(&read(&log("", |_| String::new()))).contains("WARNING"));
+    // Without a course a heading that is counted the other way turns against the track as well: the yaw rate tells the two apart.
+    for (axis, heading) in [(1.0, -1.0), (-1.0, 1.0)] {
+        let mut text = "time,lat,lon,sog_kn,heading,rudder,rpm,rot [deg/min]\n".to_owned();
+        for row in sailed(0.0) {
+            let [lat, lon] = row.place;
+            let (lon, psi) = (axis * lon, (heading * row.heading).rem_euclid(360.0));
+            let rest = format!("10.00,{psi:.2},{:.1},120,{:.2}", row.rudder, row.rate);
+            text += &format!("{},{lat:.7},{lon:.7},{rest}\n", iso(row.t));
+        }
+        let imported = read(&text);
+        assert!(off(&imported) < 0.02 && imported.origin.unwrap()[1] > 14.0, "{axis}: {}", notes(&imported));
+        let (r, rudder) = (channel(&imported, 0, Channel::R), channel(&imported, 0, Channel::Delta));
+        assert!(rudder[45] > 0.1 && rudder[60] < -0.1 && r[45] > 0.0, "{axis}");
+    }
 }
 
 fn summed(body: &str) -> String {
@@ -498,6 +512,62 @@ fn times_are_read_in_several_columns_and_in_forms_of_their_own() {
     of("Time", &|s| format!("135/{:02}:{:02}:{:02}", hours(s), minutes(s), seconds(s)));
     of("DOY", &|s| format!("{:.8}", 135.0 + s as f64 / 86_400.0));
     of("Hour of day", &|s| format!("{:.7}", s as f64 / 3600.0));
+    of("Time", &|s| format!("{} sec", s - 36_000));
+    of("Date,Time", &|s| format!("2021-06-03,{:.8}", s as f64 / 86_400.0));
+    of("Time", &|s| format!("2021-06-03-{:02}:{:02}:{:02}", hours(s), minutes(s), seconds(s)));
+    of("Time", &|s| format!("20210603-{:02}{:02}{:02}", hours(s), minutes(s), seconds(s)));
+}
+
+/// The first rows of the usual log, with its heading in other columns.
+fn headed(count: usize, names: &str, value: impl Fn(f64) -> String) -> String {
+    let rows = sailed(0.0);
+    let mut text = NAMES.replace("heading", names).replace("rudder", "rudder [deg]") + "\n";
+    for row in &rows[..count] {
+        let all = fields(row);
+        let mut parts: Vec<&str> = all.split(',').collect();
+        let heading = value(row.heading * DEGREE);
+        parts[5] = &heading;
+        text += &(parts.join(",") + "\n");
+    }
+    text
+}
+
+#[test]
+fn a_heading_that_counts_from_east_is_turned_whether_the_ship_turns_much_or_not() {
+    let from_east = |psi: f64| std::f64::consts::FRAC_PI_2 - psi;
+    let wrapped = |angle: f64| angle.sin().atan2(angle.cos());
+    // A leg, a zigzag and a turn; and all of it.
+    for count in [40, 90, 600] {
+        let as_degrees = headed(count, "yaw [deg]", |psi| format!("{:.2}", wrapped(from_east(psi)) / DEGREE));
+        let as_radians = headed(count, "yaw [rad]", |psi| format!("{:.5}", wrapped(from_east(psi))));
+        let quaternion = headed(count, "qw,qx,qy,qz", |psi| {
+            let half = 0.5 * wrapped(from_east(psi));
+            format!("{:.7},0,0,{:.7}", half.cos(), half.sin())
+        });
+        for text in [as_degrees, as_radians, quaternion] {
+            let imported = read(&text);
+            assert!(off(&imported) < 0.02, "{count}: {}: {}", text.lines().next().unwrap(), off(&imported));
+            let rudder = channel(&imported, 0, Channel::Delta);
+            assert!(count < 90 || (rudder[45] > 0.1 && rudder[60] < -0.1), "{count}");
+        }
+        assert!(off(&read(&headed(count, "heading", |psi| format!("{:.2}", psi / DEGREE)))) < 0.02, "{count}");
+    }
+}
+
+#[test]
+fn a_table_with_a_row_for_each_value_is_told_with_what_makes_columns_of_it() {
+    let text = log("", |_| String::new());
+    let names: Vec<&str> = NAMES.split(',').collect();
+    let mut long = "_time,_field,_value\n".to_owned();
+    for line in text.lines().skip(1) {
+        let parts: Vec<&str> = line.split(',').collect();
+        for (name, value) in names.iter().zip(&parts).skip(1) {
+            long += &format!("{},{name},{value}\n", parts[0]);
+        }
+    }
+    let said = written(&long, &ImportSettings::default()).unwrap_err();
+    let pivot = "pivot_table(index=\"_time\", columns=\"_field\", values=\"_value\")";
+    contains_all(&said, &["a row for each value", "`_field`", pivot]);
 }
 
 #[test]
@@ -730,6 +800,7 @@ fn what_blanks_cost_is_reported_with_the_bridge_that_keeps_it() {
 fn names_are_read_in_german_french_italian_and_spanish() {
     let languages = [
         "Zeit,Breite,Länge,Fahrt über Grund [kn],Kurs über Grund,Steuerkurs,Ruderlage,Wellendrehzahl [1/min]",
+        "Zeit,Breite,Länge,FüG [kn],KüG,Kurs rw.,Ruderlage,Wellendrehzahl [1/min]",
         "Heure,Latitude,Longitude,Vitesse fond (kn),Route fond,Cap vrai,Angle de barre,Régime hélice [rpm]",
         "Ora,Latitudine,Longitudine,Velocità al suolo [kn],Rotta,Prua,Angolo timone,Giri elica [rpm]",
         "Hora,Latitud,Longitud,Velocidad sobre el fondo [kn],Rumbo sobre el fondo,Rumbo,Ángulo de timón,Revoluciones [rpm]",

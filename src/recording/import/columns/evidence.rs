@@ -170,9 +170,9 @@ pub fn direction(
     if is_magnetic(name) {
         bring_to_true(&mut verdict, meaning, known);
     }
-    if let (Some([right, _]), Some([mirrored, turned])) = (agreement(factor, 1.0), agreement(factor, -1.0)) {
+    if let Some([right, _]) = agreement(factor, 1.0) {
         let degrees = |angle: f64| sig(angle.to_degrees(), 3);
-        if mirrored > AGREE && mirrored > right + 0.3 {
+        if let Some(turned) = known.track.as_ref().and_then(|track| track.anticlockwise(&raw(factor))) {
             let quarter = (turned / FRAC_PI_2).round() * FRAC_PI_2;
             (verdict.factor, verdict.offset) = (-factor, quarter);
             if given.is_none_or(|g| !g.by_user) && known.mirrored(columns, &verdict) {
@@ -183,7 +183,7 @@ pub fn direction(
                 ));
             }
             verdict.evidence += &format!(
-                "; turns against the track: counted anticlockwise, from {} deg clockwise of north",
+                "; goes with the track where it is counted anticlockwise, from {} deg clockwise of north",
                 degrees(quarter)
             );
         } else if right > AGREE {

@@ -8,7 +8,7 @@ use crate::numerals::sig;
 use crate::recording::Channel;
 use crate::recording::import::error::ImportError;
 use crate::recording::import::signals::log::{Column, Meaning, needed};
-use crate::recording::import::signals::motion::{AGREE, Track};
+use crate::recording::import::signals::motion::{AGREE, NO_COURSE, Track, ratio};
 use crate::recording::import::signals::place::places;
 use crate::recording::import::signals::signal::{Signal, Tidied, median};
 use crate::recording::import::signals::wind::doubts;
@@ -133,26 +133,27 @@ pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportErr
     Ok(signals)
 }
 
-/// A course is none from this mean of one minus the cosine of its angle to the track on: 11 deg (root mean square), more than fixes
-/// of some metres make of a ship under way.
-const NO_COURSE: f64 = 0.02;
-/// Directions agree in one sense and not in the other where the lengths of their means are so far apart.
-const APART: f64 = 0.3;
+/// Coherence from which a ratio means something.
+const COHERENT: f64 = 0.6;
 
 /// The axes of position that are counted the wrong way, 0 for north and 1 for east: latitude and longitude against which every direction
 /// turns, from north or south and not from east or west as a mathematician's angle; or half a turn from which every direction points,
-/// which turns both.
+/// which turns both. A heading alone turns against the track where it is itself counted the wrong way, too: its axes are those of the
+/// position unless the yaw rate turns against it, or a velocity over ground goes where the track does.
 fn wrong_axes(track: &Track, chosen: &Chosen<'_>) -> Option<&'static [usize]> {
     if !chosen.contains_key(&Meaning::Latitude) || !chosen.contains_key(&Meaning::Longitude) {
+        return None;
+    }
+    if !chosen.contains_key(&Meaning::Course) && heading_is_wrong(track, chosen) {
         return None;
     }
     let directions: Vec<&Vec<&Column>> =
         [Meaning::Channel(Channel::Psi), Meaning::Course].iter().filter_map(|m| chosen.get(m)).collect();
     let against = |columns: &&Vec<&Column>| -> Option<&'static [usize]> {
         let signal = heading(columns, Some(track));
-        let [[right, off], [mirrored, turned]] = [track.agreement(&signal, 1.0)?, track.agreement(&signal, -1.0)?];
+        let [right, off] = track.agreement(&signal, 1.0)?;
         let quarters = |angle: f64| (angle / FRAC_PI_2).round().rem_euclid(4.0);
-        if mirrored > AGREE && mirrored > right + APART {
+        if let Some(turned) = track.anticlockwise(&signal) {
             match quarters(turned) {
                 0.0 => Some(&[1]),
                 2.0 => Some(&[0]),
@@ -164,6 +165,23 @@ fn wrong_axes(track: &Track, chosen: &Chosen<'_>) -> Option<&'static [usize]> {
     };
     let axes: Vec<&'static [usize]> = directions.iter().map(against).collect::<Option<_>>()?;
     axes.first().copied().filter(|first| axes.iter().all(|axis| axis == first))
+}
+
+/// Whether others than the heading say how the ship moved, and the heading contradicts them.
+fn heading_is_wrong(track: &Track, chosen: &Chosen<'_>) -> bool {
+    let raw = |meaning: Meaning| Some(Signal::new(chosen.get(&meaning)?, 1.0, 0.0, false).0);
+    let alike = |a: &Signal, b: &Signal| ratio(&a.pairs(b)).filter(|r| r.coherence > COHERENT).map(|r| r.gain);
+    let [north, east] = [Meaning::VelocityNorth, Meaning::VelocityEast].map(raw);
+    if let (Some(north), Some(east)) = (north, east) {
+        let along = |own: &Signal, other: &Signal| alike(own, other).is_some_and(|gain| gain > 0.0);
+        return along(&track.north, &north) && along(&track.east, &east);
+    }
+    let (Some(psi), Some(r)) = (chosen.get(&Meaning::Channel(Channel::Psi)), raw(Meaning::Channel(Channel::R))) else {
+        return false;
+    };
+    let psi = heading(psi, Some(track));
+    let span = psi.span().max(r.span());
+    alike(&psi.rate(span), &r.smooth(span)).is_some_and(|gain| gain < 0.0)
 }
 
 fn origin_words(origin: [f64; 2]) -> String {

@@ -42,18 +42,18 @@ pub const PHRASES: &[(Meaning, &str)] = &[
     (
         Course,
         "cog, course, course over ground, track made good, course made good, kurs uber grund, kurs ueber \
-         grund, kug, kurs over grunn, grondkoers, route fond, route sur le fond, rotta, rotta al suolo, rotta \
+         grund, kug, ku g, kurs over grunn, grondkoers, route fond, route sur le fond, rotta, rotta al suolo, rotta \
          vera, rotta sul fondo, rumbo sobre el fondo, rumbo sobre fondo, rumbo efectivo, derrota",
     ),
     (
         GroundSpeed,
         "sog, speed over ground, ground speed, groundspeed, gps speed, speed gps, gnss speed, speed gnss, speed made good, fahrt uber grund, \
-         fahrt ueber grund, fug, fart over grunn, vitesse fond, vitesse sur le fond, velocita al suolo, \
+         fahrt ueber grund, fug, fu g, fart over grunn, vitesse fond, vitesse sur le fond, velocita al suolo, \
          velocita sul fondo, velocidad sobre el fondo, velocidad sobre fondo",
     ),
     (
         Channel(Psi),
-        "heading, hdg, hdt, hdm, gyro, psi, yaw, compass, head, steuerkurs, kurs rechtweisend, cap, cap vrai, \
+        "heading, hdg, hdt, hdm, gyro, psi, yaw, compass, head, steuerkurs, kurs rechtweisend, kurs rw, rw kurs, kurs missweisend, mw kurs, cap, cap vrai, \
          cap magnetique, gyrocompass, gyro compass, kreiselkompass, girobussola, prua, prora, angolo di prua, rumbo, rumbo verdadero, rumbo magnetico",
     ),
     (
@@ -119,7 +119,7 @@ pub const DRIVES: &str =
     "propeller, prop, shaft, engine, me, motor, moteur, motore, screw, helice, elica, schraube, welle, maschine";
 
 /// Names of a magnetic reference.
-pub const MAGNETIC: &str = "magnetic, mag, hdm, compass, magnetisch, magnetique, magnetico";
+pub const MAGNETIC: &str = "magnetic, mag, hdm, compass, magnetisch, magnetique, magnetico, missweisend, mw";
 
 /// Words of the wind.
 pub const WIND: &str = "wind, vent, vento, viento, tws, twd, twa, aws, awa, awd, aw, tw";

@@ -115,9 +115,9 @@ fn reordered(text: &str, order: DateOrder) -> Option<String> {
     if text.len() >= 14 && text.bytes().take(14).all(|b| b.is_ascii_digit()) {
         return Some(format!("{}T{}", &text[..8], &text[8..]));
     }
-    let at = text.find([' ', 'T', '_']).unwrap_or(text.len());
+    let at = text.find([' ', 'T', '_']).or_else(|| end_of_date(text)).unwrap_or(text.len());
     let (date, rest) = (text.get(..at)?, text.get(at..)?);
-    let rest = rest.trim_start_matches([' ', 'T', '_']);
+    let rest = rest.trim_start_matches([' ', 'T', '_', '-']);
     let separator = date.chars().find(|c| ['.', '/'].contains(c) || (*c == '-' && date.find('-') < Some(4)));
     let date = match separator {
         None => date.to_owned(),
@@ -135,7 +135,23 @@ fn reordered(text: &str, order: DateOrder) -> Option<String> {
     };
     // Ten in the morning without its leading nought.
     let rest = if rest.find(':') == Some(1) { format!("0{rest}") } else { rest.to_owned() };
+    // Hours, minutes and seconds with the separator of the date: `10-00-03`.
+    let dashed = rest
+        .as_bytes()
+        .get(..6)
+        .is_some_and(|b| [b[2], b[5]] == *b"--" && is_digits(&rest[..2]) && is_digits(&rest[3..5]));
+    let rest = if dashed { rest.replacen('-', ":", 2) } else { rest };
     Some(if rest.is_empty() { date } else { format!("{date}T{}", rest.replace(' ', "")) })
+}
+
+/// Where a date ends after which a dash and a time of day follow: `2024-06-12-10:00:03`, `20240612-100003`.
+fn end_of_date(text: &str) -> Option<usize> {
+    let lengths = if text.get(..8).is_some_and(is_digits) { [8, 8] } else { [10, 9] };
+    let follows = |at: &usize| {
+        let rest = text.get(*at..).and_then(|rest| rest.strip_prefix('-'));
+        rest.is_some_and(|rest| rest.get(..2).is_some_and(is_digits) && rest.len() >= 5)
+    };
+    lengths.into_iter().find(follows)
 }
 
 /// Seconds that a clock is ahead of UTC by the name of its column: `Time (UTC+2)`, `Zeit GMT+02:00`.
@@ -185,7 +201,7 @@ pub fn date_order<'a>(texts: impl Iterator<Item = &'a str>) -> Option<DateOrder>
 const MOST_HOURS: u32 = 10_000;
 
 /// The forms of times that are read, for messages.
-pub const FORMS: &str = "2024-05-14 08:00:00, 14.05.2024 08:00:00, 05/14/2024 8:00:00 AM, 20240514T080000Z, a date in one column and 08:00:00, 08.00.00 or 080000 in another, \
+pub const FORMS: &str = "2024-05-14 08:00:00, 14.05.2024 08:00:00, 05/14/2024 8:00:00 AM, 20240514T080000Z, 2024-05-14-08:00:00, a date in one column and 08:00:00, 08.00.00 or 080000 in another, \
 year, month, day, hour, minute and second in six columns, 08h00m00s, 135/08:00:00 (day of the year), and numbers of seconds or of any unit in the name (`Time [ms]`) or passed with `--unit t=`";
 
 /// Seconds since midnight, or since some start, of a time such as `10:03:05.25`, `10:03 PM`, `03:05.25`, `10.03.05`, `10h03m05s`,
@@ -241,6 +257,12 @@ pub fn are_digits_of_day(values: &[f64]) -> bool {
     let (low, high) = finite().fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
     let step = values.windows(2).map(|v| v[1] - v[0]).filter(|s| *s > 0.0).fold(f64::MAX, f64::min);
     high - low > 100.0 && step <= 30.0 && finite().all(|v| v % 100.0 < 60.0 && digits_of_day(v).is_some())
+}
+
+/// Whether numbers are shares of a day: below one, in steps far below it.
+pub fn are_shares_of_day(values: &[f64]) -> bool {
+    let mut finite = values.iter().filter(|v| v.is_finite()).peekable();
+    finite.peek().is_some() && finite.all(|v| (0.0..1.0).contains(v)) && fine(values)
 }
 
 /// Steps within which a time that starts again at the full hour follows the one before: stamps of minutes and seconds that began anew with a run
@@ -392,6 +414,10 @@ mod tests {
             "May 1, 2024 10:00:03.25",
             "20240501100003.25",
             "2024-05-01_10:00:03.25",
+            "2024-05-01-10:00:03.25",
+            "2024-05-01T10-00-03.25",
+            "20240501-100003.25",
+            "01.05.2024-10:00:03.25",
         ];
         for text in same {
             assert_eq!(date_time(text, DateOrder::DayFirst), Some(1_714_557_603.25), "{text}");

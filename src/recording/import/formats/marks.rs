@@ -16,8 +16,21 @@ struct Sides {
 const NORTH_SOUTH: Sides = Sides { positive: &["n", "north"], negative: &["s", "south"] };
 const EAST_WEST: Sides = Sides { positive: &["e", "east"], negative: &["w", "west"] };
 const STARBOARD_PORT: Sides = Sides {
-    positive: &["s", "sb", "stb", "stbd", "starboard", "r", "right"],
-    negative: &["p", "ps", "port", "l", "left"],
+    positive: &[
+        "s",
+        "sb",
+        "stb",
+        "stbd",
+        "starboard",
+        "r",
+        "right",
+        "steuerbord",
+        "tribord",
+        "estribor",
+        "dx",
+        "dritta",
+    ],
+    negative: &["p", "ps", "port", "l", "left", "bb", "backbord", "babord", "bâbord", "babor", "sx", "sinistra"],
 };
 const AHEAD_ASTERN: Sides =
     Sides { positive: &["ah", "ahead", "fwd", "forward"], negative: &["as", "ast", "astern", "rev", "reverse"] };
@@ -190,6 +203,8 @@ mod tests {
         let values = read(&fields, rudder);
         assert_eq!(values[..5], [Some(-10.0), Some(10.5), Some(-3.0), Some(2.5), Some(0.0)]);
         assert!(values[5].is_some_and(f64::is_nan) && values[6].is_none());
+        assert_eq!(read(&["Bb 0.0", "Bb 3.5", "Stb 2.0"], rudder), [Some(0.0), Some(-3.5), Some(2.0)]);
+        assert_eq!(read(&["3,5 Bâbord", "tribord 2"], rudder)[1], Some(2.0));
         assert_eq!(read(&["P 10", "S 5"], Meaning::Latitude), [None, Some(-5.0)]);
         assert_eq!(signs(["P", "Stbd", ""].into_iter(), Some(rudder)).map(|s| s[..2].to_vec()), Some(vec![-1.0, 1.0]));
         assert_eq!(signs(["S", "S"].into_iter(), Some(Meaning::Latitude)), Some(vec![-1.0, -1.0]));

@@ -9,6 +9,7 @@ use super::text::read_text;
 use crate::files::written::bytes_of;
 use crate::recording::import::columns::choose::Choices;
 use crate::recording::import::error::ImportError;
+use crate::recording::import::signals::attitude::add_heading;
 use crate::recording::import::signals::log::Log;
 use std::path::Path;
 
@@ -31,14 +32,17 @@ pub fn read(path: &Path, choices: &Choices) -> Result<Vec<Log>, ImportError> {
 /// [`ImportError`]: it is no log, or has no column or no time.
 pub fn read_bytes(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<Log>, ImportError> {
     if let Some(message) = foreign(bytes) {
-        Err(ImportError::File { path: path.to_owned(), message })
-    } else if is_parquet(bytes) {
+        return Err(ImportError::File { path: path.to_owned(), message });
+    }
+    let mut logs = if is_parquet(bytes) {
         read_parquet(path, bytes, choices)
     } else if is_nmea(bytes) {
         read_nmea(path, bytes)
     } else {
         read_text(path, bytes, choices)
-    }
+    }?;
+    logs.iter_mut().for_each(add_heading);
+    Ok(logs)
 }
 
 /// Whether bytes are those of a Parquet file.

@@ -2,8 +2,9 @@
 //! What a column means and its unit are not decided here, but for what its header says.
 
 use super::clock::{
-    DateOrder, FORMS, NumericTime, are_digits_of_day, calendar, date_order, date_time, digits_of_day, has_zone,
-    is_date_alone, is_of_hour, numeric_time, past_midnight, past_the_hour, spread, time_of_day, two_orders, zone,
+    DAY, DateOrder, FORMS, NumericTime, are_digits_of_day, are_shares_of_day, calendar, date_order, date_time,
+    digits_of_day, has_zone, is_date_alone, is_of_hour, numeric_time, past_midnight, past_the_hour, spread,
+    time_of_day, two_orders, zone,
 };
 use super::header::{Header, header};
 use super::jumps::{mend, words};
@@ -58,6 +59,7 @@ pub fn read_text(path: &Path, bytes: &[u8], choices: &Choices) -> Result<Vec<Log
     let numbered = |name: &String| name.parse::<usize>().is_ok();
     let mut table = table(path, &text, &layout, !choices.columns.values().any(numbered))?;
     one_ship(&table)?;
+    one_value_a_row(&table)?;
     if table.rows.len() < 2 {
         let count = ["no line", "one line"][table.rows.len()];
         return Err(fail(&format!("there is {count} of data; give a file with at least two")));
@@ -184,6 +186,31 @@ fn one_ship(table: &Table<'_>) -> Result<(), ImportError> {
             table.names[field].0,
             rows.len(),
             named.join(", ")
+        );
+        return Err(ImportError::File { path: table.path.to_owned(), message });
+    }
+    Ok(())
+}
+
+/// Quantities that a column must name for a file to have a row for each value.
+const QUANTITIES: usize = 2;
+
+/// Refuses a file that has a row for each value, with the name of its quantity in a column.
+fn one_value_a_row(table: &Table<'_>) -> Result<(), ImportError> {
+    for field in 0..table.names.len() {
+        let words: BTreeSet<&str> = table.rows.iter().map(|(_, fields)| fields[field]).collect();
+        let known = words.iter().filter(|w| number(w, true).is_none() && meaning(w).is_some()).count();
+        // A word that is said once in a while is a remark.
+        if known < QUANTITIES || FEW * words.len() > table.rows.len() {
+            continue;
+        }
+        let name = &table.names[field].0;
+        let is_value =
+            |f: &usize| *f != field && table.rows.iter().all(|(_, fields)| number(fields[*f], true).is_some());
+        let value = (0..table.names.len()).rev().find(is_value).map_or("VALUE", |f| &table.names[f].0);
+        let time = time_field(table, None).map_or("TIME", |f| &table.names[f].0);
+        let message = format!(
+            "has a row for each value: column `{name}` names {known} quantities; give it a column for each of them first, for example with pandas: `pandas.read_csv(FILE).pivot_table(index=\"{time}\", columns=\"{name}\", values=\"{value}\").to_csv(\"log.csv\")`"
         );
         return Err(ImportError::File { path: table.path.to_owned(), message });
     }
@@ -341,6 +368,38 @@ fn of_day_in_columns(table: &Table<'_>) -> Option<Times> {
     Some(Times { clock, t, used, how })
 }
 
+/// What a column of times has in each row.
+struct OfDay {
+    /// The numbers, NaN where there is none.
+    numbers: Vec<f64>,
+    /// The unit that stands beside each of them: `12.5 sec`.
+    unit: Option<String>,
+    /// Whether they are times of day.
+    timed: bool,
+    /// Those, as seconds.
+    of_day: Vec<f64>,
+}
+
+/// Reads a column as times of day: hours, minutes and seconds, apart or in one number, or beside a date the share of the day that a
+/// spreadsheet writes.
+fn of_day(table: &Table<'_>, field: usize, dated: bool) -> OfDay {
+    let texts = || table.rows.iter().map(|(_, fields)| fields[field]);
+    let marks = Marks::of(texts(), None, table.decimal_comma);
+    let numbers: Vec<f64> = texts().map(|t| marks.value(t, table.decimal_comma).unwrap_or(f64::NAN)).collect();
+    let (digits, share) = (are_digits_of_day(&numbers), dated && are_shares_of_day(&numbers));
+    let time = |(text, number): (&str, &f64)| {
+        let time = match (digits, share) {
+            (true, _) => digits_of_day(*number),
+            (_, true) => Some(DAY * number),
+            _ => time_of_day(text),
+        };
+        time.unwrap_or(f64::NAN)
+    };
+    let of_day: Vec<f64> = texts().zip(&numbers).map(time).collect();
+    let known = of_day.iter().filter(|t| t.is_finite()).count();
+    OfDay { timed: digits || share || 2 * known >= table.rows.len(), numbers, unit: marks.unit, of_day }
+}
+
 /// The time of each row.
 fn times(table: &Table<'_>, choices: &Choices) -> Result<Times, ImportError> {
     let in_columns = || in_columns(table).or_else(|| of_day_in_columns(table));
@@ -354,15 +413,9 @@ fn times(table: &Table<'_>, choices: &Choices) -> Result<Times, ImportError> {
     let (order, unsure) = order(|| texts(date.unwrap_or(field)));
     let most = |parse: &dyn Fn(&str) -> bool| texts(field).filter(|t| parse(t)).count() * 2 >= table.rows.len();
     let name = &table.names[field].0;
-    let numbers: Vec<f64> = texts(field).map(|t| number(t, table.decimal_comma).unwrap_or(f64::NAN)).collect();
-    let digits = are_digits_of_day(&numbers);
-    let of_day = |row: usize| {
-        let time = if digits { digits_of_day(numbers[row]) } else { time_of_day(table.rows[row].1[field]) };
-        time.unwrap_or(f64::NAN)
-    };
+    let OfDay { numbers, unit: beside, timed, of_day } = of_day(table, field, date.is_some());
     let day = |row: usize, date: usize| date_time(table.rows[row].1[date], order).unwrap_or(f64::NAN);
     let rows = 0..table.rows.len();
-    let timed = digits || most(&|t| time_of_day(t).is_some());
     let dated = date.filter(|date| timed && texts(*date).any(|t| date_time(t, order).is_some()));
     // `08.05.10` beside a date is a time of day.
     let mut times = if dated.is_none() && most(&|t| date_time(t, order).is_some()) {
@@ -379,10 +432,10 @@ fn times(table: &Table<'_>, choices: &Choices) -> Result<Times, ImportError> {
         let zone = [&table.names[date].0, name].into_iter().find_map(|name| zone(name)).unwrap_or(0.0);
         let words = if zone == 0.0 { "UTC" } else { "the zone of its name" };
         let how = format!("`{}` and `{name}` ({words}{unsure})", table.names[date].0);
-        let t = rows.map(|row| day(row, date) + of_day(row) - zone).collect();
+        let t = rows.map(|row| day(row, date) + of_day[row] - zone).collect();
         Times { clock: Clock::Utc, t, used: vec![date, field], how }
     } else if timed {
-        let mut t: Vec<f64> = rows.map(of_day).collect();
+        let mut t = of_day;
         let hours = if texts(field).all(|t| t.is_empty() || is_of_hour(t)) { past_the_hour(&mut t) } else { 0 };
         past_midnight(&mut t);
         let how = match hours {
@@ -393,8 +446,8 @@ fn times(table: &Table<'_>, choices: &Choices) -> Result<Times, ImportError> {
         };
         Times { clock: Clock::Day, t, used: vec![field], how }
     } else {
-        let unit =
-            choices.units.get("t").or(table.names[field].1.as_ref()).map(String::as_str).or_else(|| time_unit(name));
+        let unit = choices.units.get("t").or(table.names[field].1.as_ref()).or(beside.as_ref()).map(String::as_str);
+        let unit = unit.or_else(|| time_unit(name));
         let unit = unit.and_then(|u| Quantity::Time.factor(u));
         let NumericTime { clock, factor, zero, words } = numeric_time(&numbers, unit);
         let t = numbers.iter().map(|t| (t - zero) * factor).collect();

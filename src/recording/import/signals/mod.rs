@@ -1,6 +1,7 @@
 //! What was measured, over time: columns as they were read, signals, tracks, positions in metres, and what is no sample in them.
 //! Which column is what is decided in `columns`.
 
+pub(super) mod attitude;
 pub(super) mod fills;
 pub(super) mod geodesy;
 pub(super) mod held;

@@ -3,7 +3,7 @@
 
 use super::signal::{Signal, size_below};
 use crate::recording::local;
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use std::ops::Range;
 
 /// Steps over which a rate is taken.
@@ -118,7 +118,27 @@ impl Track {
     }
 }
 
+/// A direction is no course from this mean of one minus the cosine of its angle to the track on: 11 deg (root mean square), more than fixes
+/// of some metres make of a ship under way.
+pub const NO_COURSE: f64 = 0.02;
+/// That mean in one sense as a share of the same in the other from which the sense is determined.
+const OTHER_SENSE: f64 = 0.5;
+/// A ship under way goes ahead: her bow is no further from the track than this \[rad\].
+const AHEAD: f64 = FRAC_PI_4;
+/// Angle to a quarter within which a direction counts from it \[rad\]: drift and current make as much.
+const OF_QUARTER: f64 = 0.35;
+
 impl Track {
+    /// Clockwise of north, where a direction \[rad\] begins to count that is counted anticlockwise, as the track goes; `None` where it is not.
+    /// It is, where it turns against the track, and where clockwise the ship would go sideways, and anticlockwise from east or west ahead.
+    pub fn anticlockwise(&self, direction: &Signal) -> Option<f64> {
+        let [[right, off], [mirrored, turned]] = [self.agreement(direction, 1.0)?, self.agreement(direction, -1.0)?];
+        let turns_against = 1.0 - right > NO_COURSE && 1.0 - mirrored < OTHER_SENSE * (1.0 - right);
+        let across = right > AGREE && (AHEAD..PI - AHEAD).contains(&off.abs());
+        let quarter = (turned.abs() - FRAC_PI_2).abs() < OF_QUARTER;
+        (mirrored > AGREE && (turns_against || across && quarter)).then_some(turned)
+    }
+
     /// How a sway velocity, in any unit, agrees with that of the track under headings \[rad\]: from -1, where it is to the other side, to 1.
     pub fn sways(&self, heading: &Signal, sway: &Signal) -> f64 {
         let (mut own, mut both, mut other) = (0.0, 0.0, 0.0);
@@ -153,7 +173,8 @@ impl Track {
             let signal = raw(factor);
             let both = [1.0, -1.0].map(|sense| track.and_then(|track| track.agreement(&signal, sense)));
             let length = both.iter().flatten().map(|a| a[0]).fold(0.0, f64::max);
-            (length, both[0].is_some_and(|[length, off]| length > AGREE && off.abs() < ALONG))
+            let along = both[0].is_some_and(|[length, off]| length > AGREE && off.abs() < ALONG);
+            (length, along || track.is_some_and(|track| track.anticlockwise(&signal).is_some()))
         };
         let [deg, rad] = [DEGREE, 1.0].map(of);
         let sure = |a: (f64, bool), b: (f64, bool)| (a.0 > AGREE && a.0 > b.0 + 0.1) || (a.1 && !b.1);
@@ -302,6 +323,33 @@ mod tests {
         assert!(rudder_effect(&r, &delta).unwrap() > 10.0);
         let (r, delta) = zigzag(-1.0);
         assert!(rudder_effect(&r, &delta).unwrap() < -10.0);
+    }
+
+    /// A ship that weaves about a course, and how her heading \[rad\] is counted; whether that is seen, and from where.
+    fn counted(course: f64, weave: f64, count: impl Fn(f64) -> f64) -> Option<f64> {
+        let heading: Vec<f64> = (0..200).map(|i| course + weave * (0.05 * f64::from(i)).sin()).collect();
+        let t: Vec<f64> = (0..200).map(f64::from).collect();
+        let (mut x, mut y) = (vec![0.0], vec![0.0]);
+        for (i, psi) in heading.iter().enumerate().take(199) {
+            x.push(x[i] + 4.0 * psi.cos());
+            y.push(y[i] + 4.0 * psi.sin());
+        }
+        let signal = |v: Vec<f64>| Signal { t: t.clone(), v, step: 1.0, jitter: 0.0 };
+        let track = Track::of(&signal(x), &signal(y)).unwrap();
+        track.anticlockwise(&signal(heading.into_iter().map(count).collect()))
+    }
+
+    #[test]
+    fn a_heading_that_counts_from_east_is_seen_in_small_turns_and_none_and_one_from_north_is_left() {
+        for (course, weave) in [(3.3, 0.3), (3.3, 0.0), (0.8, 0.3), (0.2, 0.6), (-2.0, 0.2)] {
+            let from_east = counted(course, weave, |psi| FRAC_PI_2 - psi);
+            assert!(from_east.is_some_and(|a| (a - FRAC_PI_2).abs() < 0.1), "{course} {weave} {from_east:?}");
+            for off in [0.0, 0.3, -0.4] {
+                assert_eq!(counted(course, weave, |psi| psi + off), None, "{course} {weave} {off}");
+            }
+        }
+        // From the south, with a turn.
+        assert!(counted(1.0, 0.8, |psi| PI - psi).is_some_and(|a| (a.abs() - PI).abs() < 0.1));
     }
 
     #[test]
