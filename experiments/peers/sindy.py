@@ -86,6 +86,7 @@ def features(run, terms):
         "sternway": {"Y": [np.where(u < 0, u * v, 0.0)], "N": [np.where(u < 0, u * v, 0.0)], "X": [np.where(u < 0, u * u, 0.0)]},
         "roll": {"Y": [np.gradient(speed**3 * r, t)], "N": [np.gradient(speed**3 * r, t)]},
         "heading_bias": {"north": [-east], "east": [north]},
+        "compass_deviation": {"north": [-east * cos, -east * sin], "east": [north * cos, north * sin]},
         "log_scale": {"north": [-north], "east": [-east]},
         "sway_log_bias": {"north": [sin], "east": [-cos]},
         "antenna": {"north": [-r * sin, -r * cos], "east": [r * cos, -r * sin]},

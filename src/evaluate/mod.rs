@@ -108,6 +108,7 @@ mod tests {
         let mut off = ship.clone();
         for (term, values) in [
             ("heading_bias", [("heading_bias.bias", 0.05)].as_slice()),
+            ("compass_deviation", &[("compass_deviation.north", 0.02), ("compass_deviation.east", -0.04)]),
             ("log_scale", &[("log_scale.error", 0.08)]),
             ("antenna", &[("antenna.x", 30.0), ("antenna.y", -8.0)]),
             ("time_skew", &[("time_skew.position", 1.5)]),

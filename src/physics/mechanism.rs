@@ -74,6 +74,6 @@ impl Mechanism {
 
     /// Whether it is a vector over the ground, which the weather makes anew every day; the others are coefficients, which stay.
     pub fn is_weather(&self) -> bool {
-        self.parameters == ["north", "east"]
+        self.kind == Kind::Environment && self.parameters == ["north", "east"]
     }
 }

@@ -184,6 +184,18 @@ fn a_biased_compass_is_named_as_a_sensor_error() {
 }
 
 #[test]
+fn a_deviation_of_the_compass_is_neither_a_current_nor_a_bias() {
+    let d = case(&[("compass_deviation.north", 0.03), ("compass_deviation.east", -0.04)], &[], 31);
+    assert_eq!(d.verdict, Verdict::Sensor, "{}", d.headline);
+    assert_eq!(d.findings.len(), 1, "{}", d.headline);
+    for (name, truth) in [("compass_deviation.north", 0.03), ("compass_deviation.east", -0.04)] {
+        assert!((value(&d, name) - truth).abs() < 0.003, "{name} {}", value(&d, name));
+    }
+    // Largest where it is 2.9 deg, on the heading of the vector.
+    assert!(d.headline.contains("307 deg"), "{}", d.headline);
+}
+
+#[test]
 fn a_rudder_offset_in_every_session_is_not_named() {
     let d = case(&[("rudder_offset.offset", 0.03)], &[], 9);
     assert_eq!(d.verdict, Verdict::NothingMissing, "{}", d.headline);

@@ -278,6 +278,7 @@ fn values(f: &Finding) -> String {
         let towards = east.value.atan2(north.value).to_degrees().rem_euclid(360.0);
         let (word, angle) = match f.mechanism.as_str() {
             "mean_wind" | "wave_drift" => ("from", (towards + 180.0).rem_euclid(360.0)),
+            "compass_deviation" => ("on a heading of", towards),
             _ => ("toward", towards),
         };
         return format!("{} {} {word} {angle:03.0} deg", sig(north.value.hypot(east.value), 3), north.unit);
@@ -330,7 +331,8 @@ fn together(worse: Option<[f64; 2]>) -> String {
 fn one_of(f: &Finding) -> String {
     if f.mechanism != PUSH {
         return format!(
-            "Something is missing, and these data do not decide which of: {}{}.",
+            "{}, and these data do not decide which of: {}{}.",
+            if f.kind == Kind::Sensor { "A sensor errs or something is missing" } else { "Something is missing" },
             f.confidence_set.join(", "),
             proof(f)
         );

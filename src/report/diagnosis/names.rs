@@ -3,7 +3,7 @@
 
 use crate::diagnose::proof::finding::{GENERIC, PUSH, PUSH_TITLE};
 use crate::model::Model;
-use crate::physics::Catalogue;
+use crate::physics::{Catalogue, Kind, Mechanism};
 
 /// The names of all mechanisms that can be named or withheld in a model of these terms.
 pub fn mechanism_names(catalogue: &Catalogue) -> impl Iterator<Item = &'static str> {
@@ -15,11 +15,17 @@ pub(super) fn title_of<'a>(model: &Model, name: &'a str) -> &'a str {
     match name {
         PUSH => PUSH_TITLE,
         GENERIC => "something that is not in the catalogue",
-        _ => {
-            let mut mechanisms = model.catalogue().iter().flat_map(|t| t.info().mechanisms);
-            mechanisms.find(|m| m.name == name).map_or(name, |m| m.title)
-        }
+        _ => mechanism(model, name).map_or(name, |m| m.title),
     }
+}
+
+/// What kind of thing a mechanism is; a force where it is not in the catalogue of the model.
+pub(super) fn kind_of(model: &Model, name: &str) -> Kind {
+    mechanism(model, name).map_or(Kind::Ship, |m| m.kind)
+}
+
+fn mechanism(model: &Model, name: &str) -> Option<&'static Mechanism> {
+    model.catalogue().iter().flat_map(|t| t.info().mechanisms).find(|m| m.name == name)
 }
 
 /// The plain words for a parameter, in the catalogue of the model.

@@ -1,7 +1,7 @@
 //! The first part of a diagnosis: the verdict, the findings with their size, and what is wrong with the recordings.
 //! Where the findings act and what proves them is in other parts.
 
-use super::names::title_of;
+use super::names::{kind_of, title_of};
 use super::phrases::{amplitude, p_value, percent};
 use super::proof::gains;
 use crate::diagnose::answer::calibrate::ErrorRates;
@@ -49,9 +49,13 @@ pub fn verdict_words(verdict: Verdict) -> &'static str {
     }
 }
 
-/// The verdict in capitals; one on suspected findings alone says so, one on a force and a sensor names both, and one on actuators alone is no
-/// physics that a model lacks.
+/// The verdict in capitals; one on suspected findings alone says so, one on a force and a sensor names both, and one on actuators alone, or on
+/// several mechanisms none of which is a force, is no physics that a model lacks.
 pub(super) fn title(d: &Diagnosis) -> String {
+    if let (Verdict::OneOf, Some(first)) = (d.verdict, d.findings.first()) {
+        let kinds: Vec<Kind> = first.confidence_set.iter().map(|name| kind_of(&d.model, name)).collect();
+        return one_of_words(&kinds).to_owned();
+    }
     let led = matches!(d.verdict, Verdict::Named | Verdict::Sensor);
     let Some(first) = d.findings.first().filter(|_| led) else { return verdict_words(d.verdict).to_owned() };
     let kinds = || d.findings.iter().filter(|f| f.grade == first.grade).map(|f| f.kind);
@@ -68,6 +72,20 @@ pub(super) fn title(d: &Diagnosis) -> String {
         // The findings also include forces, which are only suspected.
         (false, _, true) if d.findings.iter().any(|f| f.kind != Kind::Sensor) => "A SENSOR ERROR".to_owned(),
         (_, _, true) => verdict_words(d.verdict).to_owned(),
+    }
+}
+
+/// The verdict in capitals where one of several mechanisms of these kinds is meant.
+fn one_of_words(kinds: &[Kind]) -> &'static str {
+    let is_force = |kind: &Kind| matches!(kind, Kind::Environment | Kind::Ship);
+    if kinds.iter().all(is_force) {
+        verdict_words(Verdict::OneOf)
+    } else if kinds.iter().any(is_force) {
+        "MISSING PHYSICS OR AN ERROR OF A RECORD, ONE OF SEVERAL"
+    } else if kinds.iter().all(|kind| *kind == Kind::Sensor) {
+        "A SENSOR ERROR, ONE OF SEVERAL"
+    } else {
+        "AN ERROR OF A RECORD OR AN ACTUATOR, ONE OF SEVERAL"
     }
 }
 
@@ -241,7 +259,7 @@ fn sessions(d: &Diagnosis, f: &Finding) -> String {
 }
 
 /// Size and direction of a mechanism given by its components towards north and east (in one session, where each has its own),
-/// in the words of its kind.
+/// in the words of its kind: a deviation `d_N cos psi + d_E sin psi` is largest on the heading that is the direction of the vector.
 fn size_of(f: &Finding, session: Option<&str>, units: Units) -> Option<String> {
     let tail = session.map_or(String::new(), |s| format!(" [{s}]"));
     let part = |suffix: &str| f.parameters.iter().find(|p| p.name.ends_with(&format!("{suffix}{tail}")));
@@ -267,6 +285,10 @@ fn size_of(f: &Finding, session: Option<&str>, units: Units) -> Option<String> {
         "wave_drift" => {
             (size.sqrt(), 0.5 * error / size.sqrt(), "m significant height", format!("from {from:03.0} deg"))
         }
+        "compass_deviation" => {
+            let (factor, unit) = units.human(&north.unit);
+            (size * factor, error * factor, unit, format!("where it is largest, on a heading of {towards:03.0} deg"))
+        }
         _ => {
             let (factor, unit) = units.human(&north.unit);
             (size * factor, error * factor, unit, format!("towards {towards:03.0} deg"))
@@ -286,6 +308,16 @@ mod tests {
     use super::*;
     use crate::recording::Channel;
     use crate::recording::audit::Severity;
+
+    #[test]
+    fn several_errors_of_sensors_are_no_missing_physics() {
+        let words = |kinds: &[Kind]| one_of_words(kinds);
+        assert_eq!(words(&[Kind::Environment, Kind::Ship]), "MISSING PHYSICS, ONE OF SEVERAL");
+        assert_eq!(words(&[]), "MISSING PHYSICS, ONE OF SEVERAL");
+        assert_eq!(words(&[Kind::Sensor, Kind::Sensor]), "A SENSOR ERROR, ONE OF SEVERAL");
+        assert!(words(&[Kind::Sensor, Kind::Actuator]).starts_with("AN ERROR OF A RECORD OR AN ACTUATOR"));
+        assert!(words(&[Kind::Ship, Kind::Actuator]).starts_with("MISSING PHYSICS OR AN ERROR OF A RECORD"));
+    }
 
     #[test]
     fn every_issue_to_correct_is_written_and_only_notes_beyond_two_of_a_kind_are_counted() {

@@ -5,6 +5,8 @@
 //! The faults are the same for every law, and none is at its default:
 //! - `lost` \[-\], loss of effectiveness: `F -> (1 - k_l) F`; 1 where the actuator is dead, 2 where it pushes the other way.
 //! - `lag` \[s\], a first-order lag between channel and force: `tau c' = c_o - c`, exact for a channel that is linear between samples.
+//! - `turn_lag` \[s\], of an actuator that turns, the same between the angle that is recorded and the direction in which it pushes: what turns an
+//!   azimuth thruster or an outboard engine is another machine than what drives it. The angle of a foil is its channel, with `lag`.
 //! - `zero` \[rad\], an offset of its direction, positive clockwise from above, or of the angle of a rudder: `a -> a + a_0`. Logged forces
 //!   have no direction.
 //! - `swap` \[-\], of two actuators in each other's mirror place, a parameter of the first: `c -> c + s (c_m - c)`, `c_m -> c_m + s (c - c_m)` for every
@@ -24,6 +26,7 @@ use crate::terms::steering::rudder_lag::first_order;
 use std::collections::BTreeMap;
 use std::sync::{LazyLock, Mutex, PoisonError};
 use trimtab_ad::Scalar;
+use trimtab_ad::smooth::wrap_angle;
 
 /// A named actuator.
 #[derive(Debug)]
@@ -38,12 +41,14 @@ pub struct ActuatorTerm {
     slot: usize,
     /// How many channels it has.
     channels: usize,
-    /// How many of them are lagged: all but the angle, which comes last.
+    /// How many of them have the lag of its force: all but the angle, which comes last and has its own; that of a foil is what it pushes by.
     lagged: usize,
     /// Index of the first channel, among the commands, of the actuator in its mirror place that comes after it.
     partner: Option<usize>,
     /// Index of its lag among its parameters, behind that of the zero of its direction where it has one.
     lag: usize,
+    /// Index of the lag of its direction, where it turns.
+    turn_lag: Option<usize>,
     /// How many parameters lie between those of the propeller in whose race it stands, these included, and its own.
     before: usize,
     /// Whether a rudder stands in its race.
@@ -145,8 +150,19 @@ const LAG: ParameterInfo = ParameterInfo::new("lag", "tau", "s", "time constant 
     .scale(|s| 0.5 * size::time(s))
     .bounds(0.0, MOST_LAG);
 
+const TURN_LAG: ParameterInfo =
+    ParameterInfo::new("turn_lag", "tau_a", "s", "time constant between recorded angle and direction")
+        .scale(|s| 0.5 * size::time(s))
+        .bounds(0.0, MOST_LAG);
+
 /// A lag that is estimated begins where its slope is not that of no lag.
 const FREE_LAG: ParameterInfo = LAG.default(|s| 0.5 * size::time(s));
+const FREE_TURN_LAG: ParameterInfo = TURN_LAG.default(|s| 0.5 * size::time(s));
+
+/// Whether an actuator pushes along a channel `NAME.angle`.
+fn turns(actuator: &Actuator) -> bool {
+    actuator.law != Law::Foil && actuator.drives().contains(&Drive::Angle)
+}
 
 /// The terms that were made in this process, by what they were made of; each is kept for good, as those of the catalogue are.
 static MADE: LazyLock<Mutex<BTreeMap<String, &'static ActuatorTerm>>> = LazyLock::new(Mutex::default);
@@ -224,7 +240,11 @@ fn faults(actuator: &Actuator, parameters: &[ParameterInfo], partner: Option<&Pa
             needs_reference: *own == LOST.name,
             by_session: false,
             stand_in: false,
-            look_alikes: if *own == LAG.name { &["time_skew", "yaw_rate_skew", "log_skew"] } else { &[] },
+            look_alikes: if [LAG.name, TURN_LAG.name].contains(own) {
+                &["time_skew", "yaw_rate_skew", "log_skew"]
+            } else {
+                &[]
+            },
             trial: leaked(trial),
         }
     };
@@ -237,6 +257,10 @@ fn faults(actuator: &Actuator, parameters: &[ParameterInfo], partner: Option<&Pa
     if actuator.lag.is_none() {
         let title = format!("lag of the actuator {name}");
         faults.push(fault(&["lag"], title, format!("quick steps of {name} alone, from rest and back")));
+        if turns(actuator) {
+            let title = format!("lag of the direction of the actuator {name}");
+            faults.push(fault(&["turn_lag"], title, format!("quick turns of {name} under way, at one rate")));
+        }
     }
     if parameters.iter().any(|p| p.name == ZERO.name) {
         let turned = if actuator.law == Law::Foil { "rudder angle" } else { "direction" };
@@ -251,8 +275,7 @@ fn faults(actuator: &Actuator, parameters: &[ParameterInfo], partner: Option<&Pa
 }
 
 /// The faults of every law, as part of its equation.
-const FAULTY: &str =
-    "faults: F -> (1 - k_l) F, a -> a + a_0, c -> c + s (c_m - c) with c_m of the actuator in its mirror place";
+const FAULTY: &str = "faults: F -> (1 - k_l) F, a -> a + a_0, tau_a a' = a_c - a, c -> c + s (c_m - c) with c_m of the actuator in its mirror place";
 
 /// What a law is in words: title, equation and source.
 fn words(law: Law) -> (&'static str, &'static str, &'static str) {
@@ -289,7 +312,8 @@ fn words(law: Law) -> (&'static str, &'static str, &'static str) {
     }
 }
 
-/// The parameters of an actuator, in order: those of its law, the zero of its direction, its lag, what is lost, the swap.
+/// The parameters of an actuator, in order: those of its law, the zero of its direction, its lag, what is lost, the swap, the lag of its
+/// direction.
 fn parameters(actuator: &Actuator, has_partner: bool) -> Vec<ParameterInfo> {
     let mut parameters: Vec<ParameterInfo> = match actuator.law {
         Law::Force => actuator.components().iter().map(|c| GAINS[*c as usize]).collect(),
@@ -300,9 +324,11 @@ fn parameters(actuator: &Actuator, has_partner: bool) -> Vec<ParameterInfo> {
         Law::Foil => foil::PARAMETERS.to_vec(),
     };
     parameters.extend((actuator.law != Law::Force).then_some(ZERO));
-    parameters.push(if matches!(actuator.lag, Some(Lag::Word(_))) { FREE_LAG } else { LAG });
+    let is_free = matches!(actuator.lag, Some(Lag::Word(_)));
+    parameters.push(if is_free { FREE_LAG } else { LAG });
     parameters.push(LOST);
     parameters.extend(has_partner.then_some(SWAP));
+    parameters.extend(turns(actuator).then_some(if is_free { FREE_TURN_LAG } else { TURN_LAG }));
     parameters
 }
 
@@ -312,7 +338,8 @@ impl ActuatorTerm {
         let (title, equation, source) = words(actuator.law);
         let drives = actuator.drives();
         let parameters = parameters(actuator, partner.is_some());
-        let lag = parameters.iter().position(|p| p.name == LAG.name).unwrap_or_default();
+        let index = |name: &str| parameters.iter().position(|p| p.name == name);
+        let (lag, turn_lag) = (index(LAG.name).unwrap_or_default(), index(TURN_LAG.name));
         let mechanisms = faults(actuator, &parameters, partner.as_ref());
         let place = [actuator.x, actuator.y];
         let screw = |of: &Actuator, rate| Screw { diameter: of.diameter.unwrap_or(1.0), place: [of.x, of.y], rate };
@@ -361,10 +388,10 @@ impl ActuatorTerm {
             fixed: actuator.angle.map(f64::to_radians),
             slot: *slot,
             channels: drives.len(),
-            // The angle of a rudder is what its steering gear turns; that of a thruster is recorded as it is.
             lagged: drives.iter().filter(|d| **d != Drive::Angle || actuator.law == Law::Foil).count(),
             partner: partner.as_ref().map(|p| p.slot),
             lag,
+            turn_lag,
             before: behind.map_or(0, |(_, _, between)| between),
             is_ahead_of_rudder: *is_ahead_of_rudder,
         }
@@ -373,7 +400,8 @@ impl ActuatorTerm {
     /// Whether a parameter is free in a model that says nothing of it: gains, which no particulars give, and a lag that is to be
     /// estimated.
     pub fn free_at_first(actuator: &Actuator, parameter: &str) -> bool {
-        Self::is_gain(parameter) || parameter == "lag" && matches!(actuator.lag, Some(Lag::Word(_)))
+        Self::is_gain(parameter)
+            || ["lag", "turn_lag"].contains(&parameter) && matches!(actuator.lag, Some(Lag::Word(_)))
     }
 
     /// Whether a parameter multiplies the whole push: a gain, or the slope of a foil.
@@ -409,7 +437,7 @@ impl Term for ActuatorTerm {
     }
 
     fn reach(&self, parameter: usize) -> Reach {
-        let drives = parameter == self.lag || parameter == self.swap();
+        let drives = parameter == self.lag || parameter == self.swap() || Some(parameter) == self.turn_lag;
         let in_race = self.is_ahead_of_rudder && screw::is_in_race(parameter);
         let has_no_room = self.before + self.info.parameters.len() > MOST_PARAMETERS;
         if drives || in_race || has_no_room { Reach::Anything } else { Reach::Force }
@@ -434,6 +462,16 @@ impl<S: Scalar> Physics<S> for ActuatorTerm {
         }
         for slot in self.slot..self.slot + self.lagged {
             first_order(p[self.lag], dt, series, |i| &mut i.commands[slot]);
+        }
+        if let Some(lag) = self.turn_lag {
+            let slot = self.slot + self.lagged;
+            // The shorter way from sample to sample, and not back through all of a turn.
+            for k in 1..series.len() {
+                let before = series[k - 1].commands[slot];
+                let angle = &mut series[k].commands[slot];
+                *angle = before + wrap_angle(*angle - before);
+            }
+            first_order(p[lag], dt, series, |i| &mut i.commands[slot]);
         }
     }
 
@@ -541,7 +579,7 @@ mod tests {
         };
         assert_eq!(of("left"), ["left.lost", "left.lag", "left.zero", "left.swap"]);
         assert_eq!(of("right"), ["right.lost", "right.lag", "right.zero"]);
-        assert_eq!(of("fore"), ["fore.lost", "fore.zero", "fore.swap"]);
+        assert_eq!(of("fore"), ["fore.lost", "fore.zero", "fore.swap"], "its lags are given");
         assert_eq!(of("aft"), ["aft.lost", "aft.zero"]);
         assert_eq!(of("tau"), ["tau.lost", "tau.lag"]);
         let all = model.catalogue().iter().flat_map(|t| t.info().mechanisms.iter().map(|m| (t.info(), m)));
@@ -585,6 +623,23 @@ mod tests {
         let alone = driven(&[("right.lag", 0.4)], &recorded);
         for (a, (b, c)) in recorded.iter().zip(late.iter().zip(&alone)) {
             assert!((b.commands[3] - a.commands[0]).abs() < 1e-15 && (b.commands[0] - c.commands[3]).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn a_direction_follows_its_angle_late_the_shorter_way_and_not_its_order() {
+        let mut recorded = recorded();
+        // Past astern, where the recording jumps from half a turn to minus half a turn.
+        for (k, inputs) in recorded.iter_mut().enumerate() {
+            let angle = 3.0 + 0.02 * k as f64;
+            inputs.commands[2] = angle.sin().atan2(angle.cos());
+        }
+        let late = driven(&[("fore.turn_lag", 0.4)], &recorded);
+        for (k, (a, b)) in recorded.iter().zip(&late).enumerate().skip(30) {
+            assert_eq!(a.commands[1], b.commands[1]);
+            // A ramp is followed by its slope times the time constant behind.
+            let expected = 3.0 + 0.02 * k as f64 - 0.2 * 0.4;
+            assert!((b.commands[2] - expected).abs() < 1e-4, "{k} {}", b.commands[2]);
         }
     }
 

@@ -1,6 +1,7 @@
 //! How a sensor reports what is.
 
 pub mod antenna;
+pub mod compass_deviation;
 pub mod heading_bias;
 pub mod log_scale;
 pub mod position_lever;

@@ -7,6 +7,7 @@ pub mod rudder;
 pub mod rudder_gain;
 pub mod rudder_lag;
 pub mod rudder_late;
+pub mod rudder_limit;
 pub mod rudder_offset;
 pub mod rudder_rate;
 pub mod rudder_stall;

@@ -36,7 +36,7 @@ static INFO: TermInfo = TermInfo {
         needs_reference: true,
         by_session: false,
         stand_in: false,
-        look_alikes: &["crossflow", "rudder_rate"],
+        look_alikes: &["crossflow", "rudder_limit", "rudder_rate"],
         trial: "turning circles at 20, 30 and 35 degrees of rudder",
     }],
     parameters: &[

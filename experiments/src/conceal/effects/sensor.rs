@@ -16,6 +16,20 @@ impl Physics for Bias {
     }
 }
 
+/// The heading reads `d_N cos psi + d_E sin psi` too much.
+struct Deviation([f64; 2]);
+
+impl Physics for Deviation {
+    fn measure(&self, _clock: f64, _row: usize, _fine: &Fine, y: &mut [f64; 6]) {
+        let (sin, cos) = y[2].sin_cos();
+        y[2] += self.0[0] * cos + self.0[1] * sin;
+    }
+
+    fn truth(&self) -> Vec<(&'static str, f64, &'static str)> {
+        vec![("north", self.0[0], "rad"), ("east", self.0[1], "rad")]
+    }
+}
+
 /// The log shows (1 + e) times the speed.
 struct LogScale(f64);
 
@@ -106,6 +120,17 @@ pub const ENTRIES: &[Entry] = &[
         compare: Compare::Size("bias"),
         law: "constant",
         build: |size, _| Box::new(Bias { entry: 2, size }),
+        ..SENSOR
+    },
+    Entry {
+        name: "compass_deviation",
+        accepted: &["compass_deviation"],
+        unit: "rad",
+        size: 0.03,
+        most: 0.3,
+        compare: Compare::Truth,
+        law: "semicircular deviation, coefficients B and C",
+        build: |size, d| Box::new(Deviation(vector(size, d.direction()))),
         ..SENSOR
     },
     Entry {
