@@ -93,6 +93,38 @@ impl Uncertainty {
         };
         (0..count).map(|_| draw()).collect()
     }
+
+    /// A deviation brought inside limits: what lies beyond goes to its limit, and the others go along as the covariance has them
+    /// (the conditional mean, `d - C_V (C_VV)^-1 (d_V - limit_V)`). By itself it would leave the combinations that are known well.
+    pub fn limited(&self, deviation: &[f64], limits: impl Fn(usize) -> [f64; 2]) -> Vec<f64> {
+        let n = self.parameters.len();
+        let sd: Vec<f64> = (0..n).map(|i| self.matrix[i][i].sqrt()).collect();
+        let unit = |i: usize| if sd[i] > 0.0 { sd[i] } else { 1.0 };
+        let inside = |i: usize, d: f64| d.clamp(limits(i)[0], limits(i)[1]);
+        let (mut out, mut beyond) = (deviation.to_vec(), Vec::new());
+        loop {
+            let more: Vec<usize> = (0..n).filter(|i| !beyond.contains(i) && inside(*i, out[*i]) != out[*i]).collect();
+            if more.is_empty() {
+                break;
+            }
+            beyond.extend(more);
+            let count = beyond.len();
+            let entry = |i: usize, j: usize| 0.5 * (self.matrix[i][j] + self.matrix[j][i]) / (unit(i) * unit(j));
+            let among = DMatrix::from_fn(count, count, |a, b| entry(beyond[a], beyond[b]));
+            let excess =
+                |a: usize, _: usize| (deviation[beyond[a]] - inside(beyond[a], out[beyond[a]])) / unit(beyond[a]);
+            let excess = DVector::from_fn(count, excess);
+            let Ok(inverse) = among.pseudo_inverse(f64::EPSILON.sqrt()) else { break };
+            let pull = inverse * excess;
+            for i in 0..n {
+                let moved: f64 = (0..count).map(|a| entry(i, beyond[a]) * pull[a]).sum();
+                out[i] = deviation[i] - unit(i) * moved;
+            }
+            // Exactly, also where two of them are one.
+            beyond.iter().for_each(|i| out[*i] = inside(*i, out[*i]));
+        }
+        (0..n).map(|i| inside(i, out[i])).collect()
+    }
 }
 
 #[cfg(test)]
@@ -119,6 +151,20 @@ mod tests {
         assert!((product(&draws, 0, 1) / 60.0 - 1.0).abs() < 0.25);
         assert_eq!(draws, u.deviations(4000, 7));
         assert_ne!(draws, u.deviations(4000, 8));
+    }
+
+    #[test]
+    fn what_a_limit_cuts_off_the_others_follow_by_the_covariance_and_what_is_inside_stays() {
+        let u = example(None);
+        let limits = |i: usize| if i == 0 { [-1000.0, 1000.0] } else { [-1.0, 1.0] };
+        assert_eq!(u.limited(&[900.0, -0.2], limits), [900.0, -0.2]);
+        // A thousand of the first is 60 / 4e6 of the second each.
+        let cut = u.limited(&[3000.0, 0.1], limits);
+        assert!((cut[0] - 1000.0).abs() < 1e-9 && (cut[1] - (0.1 - 2000.0 * 60.0 / 4e6)).abs() < 1e-9, "{cut:?}");
+        let both = u.limited(&[3000.0, 5.0], limits);
+        assert_eq!(both, [1000.0, 1.0]);
+        let apart = Uncertainty::independent("test", &[("a".into(), 2.0), ("b".into(), 3.0)]).unwrap();
+        assert_eq!(apart.limited(&[9.0, 1.0], |_| [-4.0, 4.0]), [4.0, 1.0]);
     }
 
     #[test]

@@ -116,7 +116,7 @@ pub(in crate::diagnose) fn mechanism_finding(
 }
 
 /// Gives the findings of a selection the sizes in the estimate that is written to the file, with the uncertainty as it is.
-/// Returns those whose intervals excluded zero before and all include it then.
+/// Returns those that unseen runs do not prove, and whose intervals excluded zero before and all include it then.
 pub(in crate::diagnose) fn sized(
     findings: &mut [Finding],
     Selection { mechanisms, tests, .. }: &Selection,
@@ -136,7 +136,7 @@ pub(in crate::diagnose) fn sized(
         let values = c.positions(&written.free, &own.extent).into_iter().zip(held.iter()).map(of);
         let before = excludes_zero(finding);
         finding.parameters.iter_mut().zip(values).for_each(|(parameter, value)| parameter.moved_to(value));
-        if before && !excludes_zero(finding) {
+        if before && !excludes_zero(finding) && finding.grade != Grade::Confirmed {
             lost.push(finding.mechanism.clone());
         }
     }

@@ -52,12 +52,16 @@ pub fn drawn(model: &Model, uncertainty: &Uncertainty, count: usize, seed: u64) 
 /// As [`drawn`], from what is known by a fit or before it.
 pub fn drawn_from(known: Known, model: &Model, uncertainty: &Uncertainty, count: usize, seed: u64) -> Vec<Drawn> {
     let places: Vec<Option<usize>> = uncertainty.parameters.iter().map(|name| model.index(name)).collect();
+    // An estimate beyond a bound that was set later stays where it is.
+    let limits = |place: usize| {
+        let p = places[place].map(|i| &model.parameters[i]);
+        p.map_or([f64::NEG_INFINITY, f64::INFINITY], |p| [(p.lower - p.value).min(0.0), (p.upper - p.value).max(0.0)])
+    };
     let vector = |deviation: &[f64], share: f64| {
+        let step: Vec<f64> = deviation.iter().map(|d| share * d).collect();
         let mut theta = model.values();
-        for (i, deviation) in places.iter().zip(deviation).filter_map(|(i, d)| Some(((*i)?, d))) {
-            let p = &model.parameters[i];
-            // An estimate at its bound, or beyond one that was set later, stays where it is.
-            theta[i] = (p.value + share * deviation).clamp(p.lower.min(p.value), p.upper.max(p.value));
+        for (i, step) in places.iter().zip(uncertainty.limited(&step, limits)).filter_map(|(i, d)| Some(((*i)?, d))) {
+            theta[i] += step;
         }
         theta
     };

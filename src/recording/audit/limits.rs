@@ -31,6 +31,10 @@ pub const RUDDER_BLIP: f64 = 1.0 * std::f64::consts::PI / 180.0;
 pub const GOES_ON: f64 = 3.0;
 /// A heading that is off by less \[rad\], 0.5 deg, in one row is noise, or a digit of a compass whose other rows agree to the last one.
 pub const HEADING_BLIP: f64 = 0.5 * std::f64::consts::PI / 180.0;
+/// A speed that is off by less in one row is a digit of a log of 0.1 kn \[m/s\],
+pub const SPEED_BLIP: f64 = 0.0515;
+/// or this share of the speed of a model or a small craft.
+pub const SPEED_BLIP_SHARE: f64 = 0.05;
 /// A rudder up to this angle \[rad\], 45 deg, at an end of a run is one on its way over: runs are cut where an order is given.
 pub const RUDDER_OVER: f64 = 45.0 * std::f64::consts::PI / 180.0;
 /// Windows from which the scatter at the ends of a run is estimated; of longer runs every n-th is taken.

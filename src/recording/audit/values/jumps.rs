@@ -4,7 +4,7 @@
 use crate::recording::audit::issue::{Issue, Severity};
 use crate::recording::audit::limits::{
     APART_SHARE, END_WINDOWS, FAR, FAR_SHARE, FAR_SHARE_AT_ENDS, FEW, FEW_SHARE, FEW_SHARE_APART, GOES_ON,
-    HEADING_BLIP, LOST_SAME, MEDIAN_ROWS, OUTSIDE_SHARE, RUDDER_BLIP, RUDDER_OVER, TAIL,
+    HEADING_BLIP, LOST_SAME, MEDIAN_ROWS, OUTSIDE_SHARE, RUDDER_BLIP, RUDDER_OVER, SPEED_BLIP, SPEED_BLIP_SHARE, TAIL,
 };
 use crate::recording::{Channel, Recording, STATE_CHANNELS};
 use crate::statistics::median;
@@ -70,6 +70,7 @@ fn far(channel: Channel, t: &[f64], values: &[f64], set: bool) -> Vec<usize> {
     let least = match channel {
         Channel::Delta | Channel::DeltaOrder => RUDDER_BLIP / APART_SHARE,
         Channel::Psi => HEADING_BLIP / APART_SHARE,
+        Channel::U | Channel::UWater => SPEED_BLIP.min(SPEED_BLIP_SHARE * high.abs().max(low.abs())) / APART_SHARE,
         _ => 0.0,
     };
     let usual = (FAR * deviation(from_median.iter().copied())).max(FAR_SHARE * range).max(least);
@@ -248,6 +249,15 @@ mod tests {
         assert!(found(Channel::Delta, rests, |d| d[0] = -0.0908).is_empty());
         assert_eq!(found(Channel::Delta, rests, |d| d[60] = 0.3), [60]);
         assert_eq!(found(Channel::Delta, rests, |d| d[120] = 1.2), [120]);
+    }
+
+    #[test]
+    fn one_digit_of_a_log_of_a_tenth_of_a_knot_is_no_single_value() {
+        let rests = |i: usize| 7.716 + 1e-4 * (i % 5) as f64;
+        assert!(found(Channel::U, rests, |u| [30, 77].iter().for_each(|row| u[*row] += 0.0514)).is_empty());
+        assert_eq!(found(Channel::U, rests, |u| u[60] = 0.0), [60]);
+        // Of a model that is a twentieth as fast it is one.
+        assert_eq!(found(Channel::U, |i| 0.05 * rests(i), |u| u[60] += 0.0514), [60]);
     }
 
     #[test]

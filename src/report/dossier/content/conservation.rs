@@ -100,16 +100,17 @@ fn sampled(dynamics: &Dynamics<f64>, state: &[f64; STATES], inputs: &crate::stat
     }
     let mass = dynamics.inertia(&flow);
     let [along, across] = flow.current;
-    let of = |names: [&str; 2]| {
-        let all = dynamics.contributions(&state, inputs);
-        all.iter().filter(|(n, _)| names.contains(n)).map(|(_, f)| f.x * flow.u + f.y * flow.v + f.n * flow.r).sum()
-    };
+    // Of the forms of the hull all but that of the model are zero.
+    let hull = ["hull", "mmg_hull", "general_hull", "resistance"];
+    let all = dynamics.contributions(&state, inputs);
+    let power = |(_, f): &(_, Force<f64>)| f.x * flow.u + f.y * flow.v + f.n * flow.r;
+    let power = all.iter().filter(|(name, _)| hull.contains(name)).map(power).sum();
     Some(Sampled {
         velocity: [state.u, state.v, state.r],
         force: dynamics.force(&at, &flow).to_array(),
         turning: mass.force(&[across * state.r, -along * state.r, 0.0]).to_array(),
         mass,
-        power: of(["hull", "resistance"]),
+        power,
     })
 }
 
