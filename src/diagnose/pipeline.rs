@@ -182,7 +182,9 @@ fn report(
     let (file, improved, uncertainty) = file(question, fit, kept, adds, &models);
     let traces = traces(&fit.runs, fit.integration, base, last.map(|_| found));
     let verdict = answer.verdict;
+    let hull_budget = budget(found);
     let said = Said {
+        hull: &hull_budget,
         findings: &answer.findings,
         withdrawn: &answer.withdrawn,
         following: &answer.base.following,
@@ -211,9 +213,9 @@ fn report(
         confusable: confusable(first, &tests.candidates),
         adequacy_before: adequacy(first),
         adequacy_after: adequacy(left.unwrap_or(first)),
-        moves: moves(base, found, fit.integration, &fit.runs, question.model),
+        moves: moves(&fits.base, &fits.found, fit.integration, &fit.runs, question.model),
         sides: sides(left.unwrap_or(first), left.map_or(base, |_| found), base.free.len(), &kinds(&fit.runs)),
-        hull_budget: budget(found),
+        hull_budget,
         held_out: proof,
         set_aside: 0,
         stability: None,

@@ -162,7 +162,7 @@ mod tests {
         let cut = u.limited(&[3000.0, 0.1], limits);
         assert!((cut[0] - 1000.0).abs() < 1e-9 && (cut[1] - (0.1 - 2000.0 * 60.0 / 4e6)).abs() < 1e-9, "{cut:?}");
         let both = u.limited(&[3000.0, 5.0], limits);
-        assert_eq!(both, [1000.0, 1.0]);
+        assert!((both[0] - 1000.0).abs() < 1e-9 && (both[1] - 1.0).abs() < 1e-9, "{both:?}");
         let apart = Uncertainty::independent("test", &[("a".into(), 2.0), ("b".into(), 3.0)]).unwrap();
         assert_eq!(apart.limited(&[9.0, 1.0], |_| [-4.0, 4.0]), [4.0, 1.0]);
     }

@@ -74,6 +74,11 @@ impl Mechanism {
 
     /// Whether it is a vector over the ground, which the weather makes anew every day; the others are coefficients, which stay.
     pub fn is_weather(&self) -> bool {
-        self.kind == Kind::Environment && self.parameters == ["north", "east"]
+        self.kind == Kind::Environment && self.is_vector()
+    }
+
+    /// Whether it is given by its components towards north and east.
+    pub fn is_vector(&self) -> bool {
+        self.parameters == ["north", "east"]
     }
 }

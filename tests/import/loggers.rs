@@ -146,6 +146,16 @@ fn a_column_is_taken_for_what_it_is_and_not_for_one_word_of_its_name() {
 }
 
 #[test]
+fn a_column_may_be_called_by_its_header_with_the_unit() {
+    let text = log("", |_| String::new()).replace(",heading,", ",bow [deg],");
+    for name in ["bow [deg]", "bow"] {
+        let choices = Choices { columns: [("psi".to_owned(), name.to_owned())].into(), ..Choices::default() };
+        let imported = written(&text, &ImportSettings { choices, ..ImportSettings::default() }).unwrap();
+        assert!(off(&imported) < 0.01, "{name}");
+    }
+}
+
+#[test]
 fn of_columns_that_are_named_alike_the_one_that_agrees_with_the_data_is_taken() {
     let text = log(",hdg,Speed A [kn],gyro z,rate of turn [deg/min]", |row| {
         format!(",{:.1},{:.2},{:.4},{:.3}", (40.0 * row.t).rem_euclid(360.0), 19.0, 0.2 * row.t.sin(), row.rate)

@@ -124,7 +124,7 @@ pub fn confusable(s: &Screen, list: &[Candidate]) -> Vec<Likeness> {
     out
 }
 
-/// How far the free parameters of the user's model moved from one estimate to the other.
+/// How far the free parameters of the user's model moved from one model that is written to the other.
 pub fn moves(null: &Estimate, found: &Estimate, integration: Integration, runs: &[Run], user: &Model) -> Vec<Move> {
     let Wald { covariance, .. } = Wald::at(found, integration, runs);
     null.free

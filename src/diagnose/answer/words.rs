@@ -1,7 +1,7 @@
 //! The verdict in one sentence, and the trial to sail next.
 //! It says what was decided and decides nothing.
 
-use super::diagnosis::NextTrial;
+use super::diagnosis::{Budget, NextTrial};
 use crate::diagnose::evidence::candidate::Candidate;
 use crate::diagnose::evidence::place::Place;
 use crate::diagnose::evidence::push::Window;
@@ -11,7 +11,7 @@ use crate::diagnose::proof::grade::{Grade, LawGrade};
 use crate::diagnose::proof::influence::Following;
 use crate::diagnose::proof::unseen::FindingProof;
 use crate::diagnose::search::decide::Verdict;
-use crate::diagnose::settings::GUST_SHARE;
+use crate::diagnose::settings::{BENT, GUST_SHARE};
 use crate::numerals::{number_of, sig};
 use crate::physics::Kind;
 
@@ -119,6 +119,8 @@ pub struct Said<'a> {
     pub missing: Option<&'a Missing<'a>>,
     /// cVDM \[%\] of unseen runs without the findings and with all of them, where they predict these runs worse.
     pub worse: Option<[f64; 2]>,
+    /// The ship's own coefficients beside what is known of such coefficients.
+    pub hull: &'a [Budget],
 }
 
 /// The verdict in a sentence or two.
@@ -151,8 +153,23 @@ pub fn headline(verdict: Verdict, said: &Said) -> String {
         Verdict::Insufficient if !said.holds => not_followed(said.following),
         Verdict::Insufficient => withdrawn(Grade::NotIsolated)
             .map_or_else(|| "These recordings cannot answer: too few runs.".into(), not_isolated),
-        Verdict::NothingMissing => nothing(said) + &of_another_form(said.form_holds),
+        Verdict::NothingMissing => nothing(said) + &of_another_form(said.form_holds) + &bent(said.hull),
     }
+}
+
+/// That the fit needs a coefficient of the ship that no such ship has: what acts the same in all recordings may be in it.
+fn bent(hull: &[Budget]) -> String {
+    let furthest = hull.iter().filter(|b| b.used.is_finite()).max_by(|a, b| a.used.abs().total_cmp(&b.used.abs()));
+    furthest.filter(|b| b.used.abs() > BENT).map_or(String::new(), |b| {
+        format!(
+            " But the fit needs {} = {}, where {} +- {} is usual: what acts alike in all recordings may be in it, such as a lever of the \
+             antenna, another mass or another centre of gravity than in the ship file.",
+            b.name,
+            sig(b.value, 3),
+            sig(b.prior, 3),
+            sig(b.sd, 2)
+        )
+    })
 }
 
 /// That weather cannot be distinguished from the ship itself.
@@ -367,6 +384,7 @@ mod tests {
                     form_holds: true,
                     missing,
                     worse: None,
+                    hull: &[],
                 },
             )
         };
@@ -413,6 +431,14 @@ mod tests {
         assert!(named.contains("suspected") && !confirmed.contains("suspected"), "{named} {confirmed}");
         assert_eq!(of_another_form(true), "");
         assert!(of_another_form(false).contains("less than 2.0 % of the force that turns it"));
+        let hull =
+            |used: f64| [Budget { name: "hull.Yrdot".into(), prior: -1.0, sd: 2.0, value: -1.0 + 2.0 * used, used }];
+        assert_eq!(bent(&hull(4.9)), "");
+        assert!(
+            bent(&hull(-12.0)).contains("hull.Yrdot = -25.0, where -1.00 +- 2.0 is usual"),
+            "{}",
+            bent(&hull(-12.0))
+        );
         for verdict in [Verdict::Numerics, Verdict::Random, Verdict::Insufficient, Verdict::NothingMissing] {
             assert!(headline(verdict, &[], None).ends_with('.'), "{verdict:?}");
         }

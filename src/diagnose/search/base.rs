@@ -7,7 +7,7 @@ use crate::diagnose::evidence::admit::{Admission, admit, followed};
 use crate::diagnose::settings::{
     EULER_EXACT, EULER_HOPELESS, Effort, FIRST, LEFT_TO_GAIN, LOSS_ROUNDS, REFIT, SETTLE, Settings,
 };
-use crate::fit::backwards::backwards;
+use crate::fit::backwards::{Estimated, backwards, unequal};
 use crate::likelihood::estimate::{Estimate, estimate, left_to_gain, log_posterior, passes};
 use crate::likelihood::noise::NoisePrior;
 use crate::likelihood::noise_fit::guess;
@@ -122,7 +122,8 @@ impl BaseFit {
         self
     }
 
-    /// The same with a note on each actuator of the craft that pushes against its order: nothing that is named later mends that.
+    /// The same with a note on each actuator of the craft that pushes against its order, or less than its twin: nothing that is named later
+    /// mends that.
     fn with_backwards(mut self) -> Self {
         let Self { estimate, runs, integration, .. } = &self;
         let Estimate { model, free, .. } = estimate;
@@ -130,14 +131,20 @@ impl BaseFit {
             return self;
         }
         let covariance = estimate.information(*integration, runs).try_inverse();
-        let estimated = free.iter().enumerate().map(|(i, f)| {
-            let p = &model.parameters[f.column.parameter];
-            let error = covariance.as_ref().map(|c| c[(i, i)].max(0.0).sqrt() * f.column.scale);
-            (p.name.as_str(), f.value(model), error, p.info.unit)
-        });
-        let issue = |(_, sentence)| Issue::new(Severity::Warning, "backwards", sentence, "correct that first");
-        let noted = backwards(&model.ship, estimated);
-        self.admission.issues.extend(noted.into_iter().map(issue));
+        let estimated: Vec<Estimated> = free
+            .iter()
+            .enumerate()
+            .map(|(i, f)| {
+                let p = &model.parameters[f.column.parameter];
+                let error = covariance.as_ref().map(|c| c[(i, i)].max(0.0).sqrt() * f.column.scale);
+                (p.name.as_str(), f.value(model), error, p.info.unit)
+            })
+            .collect();
+        let turned = |(_, sentence)| Issue::new(Severity::Warning, "backwards", sentence, "correct that first");
+        let weak = |(_, sentence)| Issue::new(Severity::Warning, "unequal", sentence, "look at it");
+        let noted = backwards(&model.ship, estimated.iter().copied()).into_iter().map(turned);
+        let noted: Vec<Issue> = noted.chain(unequal(&model.ship, &estimated).into_iter().map(weak)).collect();
+        self.admission.issues.extend(noted);
         self
     }
 

@@ -121,9 +121,13 @@ impl Screen {
         self.test_beside(&self.base, index, extent)
     }
 
-    /// Share of a candidate's information that neither the base nor any error of a sensor can take over, in the worst direction.
+    /// Share of a candidate's information that neither the base nor any zero, scale, lever or clock of a sensor can take over, in the worst
+    /// direction. An error that itself turns with the heading is a rival, which is tested, and no such number.
     pub fn isolated(&self, index: usize, extent: &Extent, candidates: &[Candidate]) -> f64 {
-        let is_sensor = |i: &usize| candidates[*i].mechanism.kind == Kind::Sensor && *i != index;
+        let is_sensor = |i: &usize| {
+            let m = candidates[*i].mechanism;
+            m.kind == Kind::Sensor && !m.is_vector() && *i != index
+        };
         let errors: Vec<usize> =
             (0..candidates.len()).filter(is_sensor).flat_map(|i| self.columns(i)).copied().collect();
         self.test_beside(&self.evidence.extend(&self.base, &errors), index, extent).retained

@@ -78,6 +78,7 @@ pub struct Imported {
 /// # Errors
 /// [`ImportError`]: a file that cannot be read, and everything that the files do not say.
 pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, ImportError> {
+    let settings = &ImportSettings { choices: settings.choices.read_names(), ..settings.clone() };
     settings.choices.check()?;
     let mut logs: Vec<Log> = Vec::new();
     for file in files {

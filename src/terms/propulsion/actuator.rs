@@ -24,9 +24,9 @@ use crate::terms::size;
 use crate::terms::steering::foil::{self, Foil, Upstream};
 use crate::terms::steering::rudder_lag::first_order;
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 use std::sync::{LazyLock, Mutex, PoisonError};
 use trimtab_ad::Scalar;
-use trimtab_ad::smooth::wrap_angle;
 
 /// A named actuator.
 #[derive(Debug)]
@@ -469,7 +469,7 @@ impl<S: Scalar> Physics<S> for ActuatorTerm {
             for k in 1..series.len() {
                 let before = series[k - 1].commands[slot];
                 let angle = &mut series[k].commands[slot];
-                *angle = before + wrap_angle(*angle - before);
+                *angle -= ((*angle - before) / TAU).nearest() * TAU;
             }
             first_order(p[lag], dt, series, |i| &mut i.commands[slot]);
         }

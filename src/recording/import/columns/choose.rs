@@ -3,7 +3,7 @@
 
 use super::actuators::by_names;
 use super::agree::{Sight, heading};
-use super::names::{Reading, VAGUELY, by_revolutions, is_second_choice, is_unit, reading, source};
+use super::names::{Reading, VAGUELY, by_revolutions, is_second_choice, is_unit, name_and_unit, reading, source};
 use super::orders::follows;
 use crate::files::suggestion;
 use crate::recording::import::error::ImportError;
@@ -29,6 +29,16 @@ pub struct Choices {
 }
 
 impl Choices {
+    /// The same with the names of columns as they are read: a header that is copied with its unit, `n [rpm]`, is the column `n`.
+    pub fn read_names(&self) -> Self {
+        let read = |name: &String| match name_and_unit(name) {
+            (read, Some(_)) => read,
+            _ => name.clone(),
+        };
+        let columns = self.columns.iter().map(|(quantity, name)| (quantity.clone(), read(name))).collect();
+        Self { columns, ..self.clone() }
+    }
+
     /// What a column is by itself: as the user says, as the format says, as its name says.
     pub fn meaning(&self, column: &Column) -> Option<Meaning> {
         let forced = self.columns.iter().find(|(_, name)| name.eq_ignore_ascii_case(&column.name));
