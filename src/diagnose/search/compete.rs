@@ -135,6 +135,14 @@ pub fn start_with(
         starts.push(at(1.0, &rooted(amplitude, c.columns.len().max(1))));
         starts.extend(STARTS_OF_SQUARES.map(|share| at(0.0, &(amplitude * share))));
     }
+    if c.mechanism.probe == Probe::Forward {
+        // Where it was probed, too; what exists on one side of zero may have no slope there, and shows once the rest has followed.
+        starts.push(at(1.0, &amplitude.map(f64::signum)));
+        for (model, value) in &mut starts {
+            let found = problem.estimate(model, &current.free, noise, TOGETHER_EFFORT);
+            (*model, *value) = (found.model, found.log_posterior);
+        }
+    }
     let best = starts.into_iter().reduce(|a, b| if b.1 > a.1 { b } else { a });
     let model = best.map_or_else(|| current.model.clone(), |(model, _)| model);
     let mut free = current.free.clone();

@@ -3,7 +3,7 @@
 
 use super::signal::{Signal, size_below};
 use crate::recording::local;
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::Range;
 
 /// Steps over which a rate is taken.
@@ -121,12 +121,10 @@ impl Track {
 /// A direction is no course from this mean of one minus the cosine of its angle to the track on: 11 deg (root mean square), more than fixes
 /// of some metres make of a ship under way.
 pub const NO_COURSE: f64 = 0.02;
-/// That mean in one sense as a share of the same in the other from which the sense is determined.
+/// That mean in one sense as a share of the same in the other from which the sense is determined; so of the angles.
 const OTHER_SENSE: f64 = 0.5;
-/// A ship under way goes ahead: her bow is no further from the track than this \[rad\].
-const AHEAD: f64 = FRAC_PI_4;
-/// Angle to a quarter within which a direction counts from it \[rad\]: drift and current make as much.
-const OF_QUARTER: f64 = 0.35;
+/// A ship under way goes ahead: drift and current bring her bow no further from the track than this \[rad\].
+const DRIFT: f64 = 0.35;
 
 impl Track {
     /// Clockwise of north, where a direction \[rad\] begins to count that is counted anticlockwise, as the track goes; `None` where it is not.
@@ -134,8 +132,9 @@ impl Track {
     pub fn anticlockwise(&self, direction: &Signal) -> Option<f64> {
         let [[right, off], [mirrored, turned]] = [self.agreement(direction, 1.0)?, self.agreement(direction, -1.0)?];
         let turns_against = 1.0 - right > NO_COURSE && 1.0 - mirrored < OTHER_SENSE * (1.0 - right);
-        let across = right > AGREE && (AHEAD..PI - AHEAD).contains(&off.abs());
-        let quarter = (turned.abs() - FRAC_PI_2).abs() < OF_QUARTER;
+        let across = right > AGREE && (DRIFT..PI - DRIFT).contains(&off.abs());
+        let from_quarter = (turned.abs() - FRAC_PI_2).abs();
+        let quarter = from_quarter < DRIFT && from_quarter < OTHER_SENSE * off.abs().min(PI - off.abs());
         (mirrored > AGREE && (turns_against || across && quarter)).then_some(turned)
     }
 
