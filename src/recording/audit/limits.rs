@@ -220,7 +220,7 @@ pub const POOLED_AGREED: f64 = 10.0;
 /// and at most this share of the squares is left. Of 1094 sound runs (27 concealed cases, seeds 8101 to 8129, and one of 14 runs) the least
 /// share for a lag of two rows or more was 0.44, and for the other side 0.83.
 pub const POOLED_LEAVES: f64 = 0.4;
-/// Evidence with which a run shows by itself that a channel acts to its own side, two standard errors: the other runs do not say otherwise then.
+/// Evidence with which a run shows by itself that a channel acts to the other side, two standard errors: else the other runs do not say so.
 pub const OWN_SIDE: f64 = 4.0;
 /// A channel that is less than this share, squared and by window, of what it is in the run in which it moves most rests, but for rounding.
 pub const POOLED_STILL: f64 = 1e-9;

@@ -553,7 +553,7 @@ mod tests {
     /// The recording as it drives the craft with some faults.
     fn driven(faults: &[(&str, f64)], series: &[Inputs<f64>]) -> Vec<Inputs<f64>> {
         let (mut model, mut series) = (model(), series.to_vec());
-        model.set(&[("aft.lag", 0.0), ("fore.lag", 0.0)]).unwrap();
+        model.set(&[("aft.lag", 0.0), ("aft.turn_lag", 0.0), ("fore.lag", 0.0)]).unwrap();
         model.set(faults).unwrap();
         Dynamics::new(&model, model.values()).drive(0.1, &mut series);
         series

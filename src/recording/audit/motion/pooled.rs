@@ -195,8 +195,9 @@ fn is_unanswered(curve: &Curve, others: &[f64], expected: f64) -> bool {
 fn judged(curve: &Curve, others: &[f64], expected: f64, worth: &impl Fn(f64) -> bool) -> Option<Odd> {
     let turned = to_the_other_side(curve, others);
     let zero = curve.zero();
-    // A run that shows by itself to which side the channel acts is not judged by the others, and neither is one that is as usual.
-    let of_side = curve.side() <= OWN_SIDE && curve.at_zero().left(others) > POOLED_UNUSUAL * expected;
+    // A run that does not show by itself that the channel acts to the other side is not judged by the others, and neither is one that is as
+    // usual.
+    let of_side = curve.side() < -OWN_SIDE && curve.at_zero().left(others) > POOLED_UNUSUAL * expected;
     let mut best: Option<(f64, Odd)> = None;
     for (place, sums) in curve.sums.iter().enumerate() {
         let seconds = curve.seconds(place);
