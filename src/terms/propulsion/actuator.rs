@@ -7,6 +7,7 @@
 //! - `lag` \[s\], a first-order lag between channel and force: `tau c' = c_o - c`, exact for a channel that is linear between samples.
 //! - `turn_lag` \[s\], of an actuator that turns, the same between the angle that is recorded and the direction in which it pushes: what turns an
 //!   azimuth thruster or an outboard engine is another machine than what drives it. The angle of a foil is its channel, with `lag`.
+//! - `other_sign` \[-\], of an actuator that turns: `a -> (1 - 2 s) a`; 1 where its angle is recorded with the other sign.
 //! - `zero` \[rad\], an offset of its direction, positive clockwise from above, or of the angle of a rudder: `a -> a + a_0`. Logged forces
 //!   have no direction.
 //! - `swap` \[-\], of two actuators in each other's mirror place, a parameter of the first: `c -> c + s (c_m - c)`, `c_m -> c_m + s (c - c_m)` for every
@@ -47,7 +48,7 @@ pub struct ActuatorTerm {
     partner: Option<usize>,
     /// Index of its lag among its parameters, behind that of the zero of its direction where it has one.
     lag: usize,
-    /// Index of the lag of its direction, where it turns.
+    /// Index of the lag of its direction, where it turns; the sign of its angle follows.
     turn_lag: Option<usize>,
     /// How many parameters lie between those of the propeller in whose race it stands, these included, and its own.
     before: usize,
@@ -146,6 +147,16 @@ const SWAP: ParameterInfo = ParameterInfo::new(
 .spread(|_| 0.5)
 .bounds(0.0, 1.5);
 
+/// Bounded as [`SWAP`].
+const OTHER_SIGN: ParameterInfo = ParameterInfo::new(
+    "other_sign",
+    "s_a",
+    "-",
+    "share of the other sign in its angle: 1 where that is recorded with the other sign",
+)
+.spread(|_| 0.5)
+.bounds(0.0, 1.5);
+
 const LAG: ParameterInfo = ParameterInfo::new("lag", "tau", "s", "time constant between channel and force")
     .scale(|s| 0.5 * size::time(s))
     .bounds(0.0, MOST_LAG);
@@ -235,7 +246,7 @@ fn faults(actuator: &Actuator, parameters: &[ParameterInfo], partner: Option<&Pa
             kind: Kind::Actuator,
             parameters: parameter,
             companions: &[],
-            probe: if *own == SWAP.name { Probe::Whole } else { Probe::Tangent },
+            probe: if [SWAP.name, OTHER_SIGN.name].contains(own) { Probe::Whole } else { Probe::Tangent },
             // Its gain takes over what is lost in all sessions alike.
             needs_reference: *own == LOST.name,
             by_session: false,
@@ -267,6 +278,10 @@ fn faults(actuator: &Actuator, parameters: &[ParameterInfo], partner: Option<&Pa
         let title = format!("offset of the {turned} of the actuator {name}");
         faults.push(fault(&["zero"], title, format!("runs driven by {name} alone, ahead and astern")));
     }
+    if turns(actuator) {
+        let title = format!("angle of the actuator {name} recorded with the other sign");
+        faults.push(fault(&["other_sign"], title, format!("runs driven by {name} alone at angles to both sides")));
+    }
     if let Some(Partner { name: other, .. }) = partner {
         let title = format!("swapped sides: {name} has the recording of {other}, and {other} that of {name}");
         faults.push(fault(&["swap"], title, format!("turns from rest by {name} alone and by {other} alone")));
@@ -275,7 +290,7 @@ fn faults(actuator: &Actuator, parameters: &[ParameterInfo], partner: Option<&Pa
 }
 
 /// The faults of every law, as part of its equation.
-const FAULTY: &str = "faults: F -> (1 - k_l) F, a -> a + a_0, tau_a a' = a_c - a, c -> c + s (c_m - c) with c_m of the actuator in its mirror place";
+const FAULTY: &str = "faults: F -> (1 - k_l) F, a -> a + a_0, a -> (1 - 2 s_a) a, tau_a a' = a_c - a, c -> c + s (c_m - c) with c_m of the actuator in its mirror place";
 
 /// What a law is in words: title, equation and source.
 fn words(law: Law) -> (&'static str, &'static str, &'static str) {
@@ -312,8 +327,8 @@ fn words(law: Law) -> (&'static str, &'static str, &'static str) {
     }
 }
 
-/// The parameters of an actuator, in order: those of its law, the zero of its direction, its lag, what is lost, the swap, the lag of its
-/// direction.
+/// The parameters of an actuator, in order: those of its law, the zero of its direction, its lag, what is lost, the swap, and of one that
+/// turns the lag of its direction and the sign of its angle.
 fn parameters(actuator: &Actuator, has_partner: bool) -> Vec<ParameterInfo> {
     let mut parameters: Vec<ParameterInfo> = match actuator.law {
         Law::Force => actuator.components().iter().map(|c| GAINS[*c as usize]).collect(),
@@ -328,7 +343,9 @@ fn parameters(actuator: &Actuator, has_partner: bool) -> Vec<ParameterInfo> {
     parameters.push(if is_free { FREE_LAG } else { LAG });
     parameters.push(LOST);
     parameters.extend(has_partner.then_some(SWAP));
-    parameters.extend(turns(actuator).then_some(if is_free { FREE_TURN_LAG } else { TURN_LAG }));
+    if turns(actuator) {
+        parameters.extend([if is_free { FREE_TURN_LAG } else { TURN_LAG }, OTHER_SIGN]);
+    }
     parameters
 }
 
@@ -437,7 +454,8 @@ impl Term for ActuatorTerm {
     }
 
     fn reach(&self, parameter: usize) -> Reach {
-        let drives = parameter == self.lag || parameter == self.swap() || Some(parameter) == self.turn_lag;
+        let turns = self.turn_lag.is_some_and(|lag| [lag, lag + 1].contains(&parameter));
+        let drives = parameter == self.lag || parameter == self.swap() || turns;
         let in_race = self.is_ahead_of_rudder && screw::is_in_race(parameter);
         let has_no_room = self.before + self.info.parameters.len() > MOST_PARAMETERS;
         if drives || in_race || has_no_room { Reach::Anything } else { Reach::Force }
@@ -465,6 +483,8 @@ impl<S: Scalar> Physics<S> for ActuatorTerm {
         }
         if let Some(lag) = self.turn_lag {
             let slot = self.slot + self.lagged;
+            let sign = S::one() - p[lag + 1] * 2.0;
+            series.iter_mut().for_each(|inputs| inputs.commands[slot] *= sign);
             // The shorter way from sample to sample, and not back through all of a turn.
             for k in 1..series.len() {
                 let before = series[k - 1].commands[slot];
@@ -579,8 +599,8 @@ mod tests {
         };
         assert_eq!(of("left"), ["left.lost", "left.lag", "left.zero", "left.swap"]);
         assert_eq!(of("right"), ["right.lost", "right.lag", "right.zero"]);
-        assert_eq!(of("fore"), ["fore.lost", "fore.zero", "fore.swap"], "its lags are given");
-        assert_eq!(of("aft"), ["aft.lost", "aft.zero"]);
+        assert_eq!(of("fore"), ["fore.lost", "fore.zero", "fore.other_sign", "fore.swap"], "its lags are given");
+        assert_eq!(of("aft"), ["aft.lost", "aft.zero", "aft.other_sign"]);
         assert_eq!(of("tau"), ["tau.lost", "tau.lag"]);
         let all = model.catalogue().iter().flat_map(|t| t.info().mechanisms.iter().map(|m| (t.info(), m)));
         for (info, m) in all.filter(|(info, _)| model.ship.actuator(info.name).is_some()) {
@@ -640,6 +660,15 @@ mod tests {
             // A ramp is followed by its slope times the time constant behind.
             let expected = 3.0 + 0.02 * k as f64 - 0.2 * 0.4;
             assert!((b.commands[2] - expected).abs() < 1e-4, "{k} {}", b.commands[2]);
+        }
+    }
+
+    #[test]
+    fn an_angle_with_the_other_sign_turns_to_the_other_side_and_no_other_channel_changes() {
+        let recorded = recorded();
+        for (a, b) in recorded.iter().zip(&driven(&[("aft.other_sign", 1.0)], &recorded)) {
+            let expected: Vec<f64> = a.commands.iter().enumerate().map(|(c, v)| if c == 5 { -v } else { *v }).collect();
+            assert!(b.commands.iter().zip(expected).all(|(b, a)| (b - a).sin().abs() < 1e-12), "{b:?}");
         }
     }
 
