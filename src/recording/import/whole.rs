@@ -78,8 +78,13 @@ pub struct Imported {
 /// # Errors
 /// [`ImportError`]: a file that cannot be read, and everything that the files do not say.
 pub fn import(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, ImportError> {
-    let settings = &ImportSettings { choices: settings.choices.read_names(), ..settings.clone() };
+    let settings = ImportSettings { choices: settings.choices.read_names(), ..settings.clone() };
     settings.choices.check()?;
+    imported(files, &settings)
+}
+
+/// As [`import`], with the names of columns as they are read.
+fn imported(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, ImportError> {
     let mut logs: Vec<Log> = Vec::new();
     for file in files {
         logs.extend(read(file, &settings.choices)?);

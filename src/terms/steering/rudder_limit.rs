@@ -1,5 +1,6 @@
 //! A rudder that goes no further than some angle, whatever is recorded: a stop of the steering gear, an indicator that follows the order.
-//! The parameter is the inverse of the limit, so that 0 is a rudder without one.
+//! The parameter is the inverse of the limit, so that 0 is a rudder without one. A rudder whose lift flattens out (a flap, a stall) looks alike
+//! in all runs: a limit is named against sessions without it.
 
 use crate::parameter::ParameterInfo;
 use crate::physics::Probe;
@@ -28,7 +29,7 @@ static INFO: TermInfo = TermInfo {
         parameters: &["inverse"],
         companions: &[],
         probe: Probe::Forward,
-        needs_reference: false,
+        needs_reference: true,
         by_session: false,
         stand_in: false,
         look_alikes: &["rudder_gain", "rudder_rate", "rudder_stall"],
