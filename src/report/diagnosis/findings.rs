@@ -40,15 +40,22 @@ pub(super) fn model(d: &Diagnosis) -> Vec<String> {
             .collect();
         format!("parameters that had absorbed the effect: {}", list.join(", "))
     });
-    lines.extend(d.sides.as_ref().map(|s| own_sides(s, units)));
+    let slope = d.model.index("rudder.lift1").map(|i| d.model.parameters[i].value);
+    lines.extend(d.sides.as_ref().map(|s| own_sides(s, units, slope)));
     lines.push(d.validity.line());
     lines
 }
 
-/// Whether the ship's own two sides differ, and by what.
-fn own_sides(s: &Sides, units: Units) -> String {
+/// Whether the ship's own two sides differ, and by what; a lift at no rudder angle also as the angle that has it, by the slope of the lift.
+fn own_sides(s: &Sides, units: Units, slope: Option<f64>) -> String {
     let differ = adequacy_words(s.p);
-    let one = |a: &Amplitude| format!("{} = {}", a.name, amplitude(a, units));
+    let as_angle = |a: &Amplitude| {
+        let slope = slope.filter(|slope| a.name == "rudder.lift0" && *slope > 0.0);
+        slope.map_or(String::new(), |slope| {
+            format!(" (as a rudder that is off by {} deg)", sig((a.value / slope).to_degrees(), 2))
+        })
+    };
+    let one = |a: &Amplitude| format!("{} = {}{}", a.name, amplitude(a, units), as_angle(a));
     let by: Vec<String> = s.clear().take(3).map(one).collect();
     let by = if by.is_empty() { String::new() } else { format!(": {}", by.join(", ")) };
     let p = p_value(s.p);
