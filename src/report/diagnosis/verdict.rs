@@ -89,6 +89,12 @@ fn one_of_words(kinds: &[Kind]) -> &'static str {
     }
 }
 
+/// What comes nearest to a finding where there is none; what is as likely by chance as not stands out from nothing.
+pub(super) fn strongest(d: &Diagnosis) -> Option<String> {
+    let first = d.ranking.first().filter(|r| d.findings.is_empty() && r.p < 0.5)?;
+    Some(format!("strongest candidate, not named: {}, {} after correction", first.title, p_value(first.p)))
+}
+
 /// The verdict with its findings, and notes on the recordings.
 pub(super) fn verdict(d: &Diagnosis) -> Vec<String> {
     let units = Units::of(&d.base.ship);
@@ -112,9 +118,7 @@ pub(super) fn verdict(d: &Diagnosis) -> Vec<String> {
             lines.push(f.why.clone());
         }
     }
-    if let (true, Some(r)) = (d.findings.is_empty(), d.ranking.first()) {
-        lines.push(format!("strongest candidate, not named: {}, {} after correction", r.title, p_value(r.p)));
-    }
+    lines.extend(strongest(d));
     lines.extend(d.withdrawn.iter().map(|f| withdrawn(f, units)));
     lines.extend(d.stability.as_ref().map(stability));
     lines.extend(d.error_rates.as_ref().map(error_rates));

@@ -12,7 +12,7 @@ use crate::report::diagnosis::findings::model;
 use crate::report::diagnosis::limits::{limits, next_trial, still_open};
 use crate::report::diagnosis::location::location;
 use crate::report::diagnosis::proof::proof;
-use crate::report::diagnosis::verdict::{error_rates, notes, stability};
+use crate::report::diagnosis::verdict::{error_rates, notes, stability, strongest};
 use crate::report::html::{Page, Section};
 use crate::report::plot::FigureError;
 use crate::report::table::Table;
@@ -68,15 +68,8 @@ fn body(d: &Diagnosis, pictures: &[Picture], from: &Provenance) -> Vec<Section> 
 
 /// What the figures of evidence are read with.
 fn evidence(d: &Diagnosis) -> Vec<String> {
-    let strongest = d.ranking.first().filter(|_| d.findings.is_empty());
     let mut lines = vec![format!("{} mechanisms were tested one at a time in the base model", d.ranking.len())];
-    lines.extend(strongest.map(|r| {
-        format!(
-            "strongest candidate, not named: {}, {} after correction",
-            r.title,
-            crate::report::diagnosis::phrases::p_value(r.p)
-        )
-    }));
+    lines.extend(strongest(d));
     lines
 }
 
