@@ -2,7 +2,7 @@
 //! It ranks the candidates for one quantity; units and signs are decided later, in `evidence`.
 
 use crate::recording::import::signals::log::{Column, Meaning};
-use crate::recording::import::signals::motion::{Track, ratio, rudder_effect};
+use crate::recording::import::signals::motion::{COHERENT, Track, ratio, rudder_effect};
 use crate::recording::import::signals::signal::{Signal, size_below};
 use crate::recording::{Channel, Quantity};
 use std::f64::consts::FRAC_PI_2;
@@ -18,8 +18,6 @@ pub struct Sight {
 
 /// A speed agrees where the track's is within this share of it: the spread of the speed of a track from fixes of some metres.
 const NEAR: f64 = 0.15;
-/// Coherence from which a ratio of speeds means something.
-const COHERENT: f64 = 0.6;
 /// t value of a rudder's effect that counts half: twice that from which its sign is determined.
 const HALF_T: f64 = 10.0;
 

@@ -5,7 +5,9 @@ use super::names::is_magnetic;
 use super::scale::{advice, clock};
 use crate::numerals::sig;
 use crate::recording::import::signals::log::{Column, Meaning};
-use crate::recording::import::signals::motion::{AGREE, DirectionUnit, MOST_RADIANS, Track, ratio, rudder_effect};
+use crate::recording::import::signals::motion::{
+    AGREE, COHERENT, DirectionUnit, MOST_RADIANS, Track, ratio, rudder_effect,
+};
 use crate::recording::import::signals::signal::{Signal, size_below};
 use crate::recording::{Channel, Quantity};
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -77,8 +79,6 @@ const NEAR: f64 = 0.15;
 const NEAR_IN_WATER: f64 = 0.3;
 /// A speed that is this many times another is no measurement of the same.
 const FAR: f64 = 5.0;
-/// Coherence from which a ratio means something.
-const COHERENT: f64 = 0.6;
 /// A steady angle of course and heading that is reported \[rad\]: 3 deg, above the error of a gyrocompass under way (1 to 2 deg).
 const STEADY: f64 = 0.052;
 /// t value of the rudder's effect from which its sign is determined.
@@ -132,16 +132,12 @@ pub fn direction(
     known: &Known,
 ) -> Result<Verdict, String> {
     let name = columns.first().map_or("", |c| c.name.as_str());
-    let agreement = |factor: f64, sense: f64| {
-        let signal = Signal::new(columns, factor, 0.0, true).0;
-        known.track.as_ref().and_then(|track| track.agreement(&signal, sense))
-    };
-    let top = largest(columns);
     let raw = |factor: f64| Signal::new(columns, factor, 0.0, true).0;
+    let agreement = |factor: f64| known.track.as_ref().and_then(|track| track.agreement(&raw(factor), 1.0));
+    let top = largest(columns);
     let shown = Track::unit_of_direction(known.track.as_ref(), raw, top);
     // A unit that the file states, and in which it goes with the track or has its size: milliradians, hundredths of a degree.
-    let goes =
-        |g: &&Given| agreement(g.factor, 1.0).map_or(top * g.factor < MOST_RADIANS, |[length, _]| length > AGREE);
+    let goes = |g: &&Given| agreement(g.factor).map_or(top * g.factor < MOST_RADIANS, |[length, _]| length > AGREE);
     let stated = given.filter(|g| g.by_user || (g.factor != 1.0 && Quantity::Angle.factor("deg") != Some(g.factor)));
     let by_jumps = || jumps_by(columns, TAU).then_some(DirectionUnit { factor: 1.0, by_track: false });
     let shown = shown.or_else(by_jumps);
@@ -170,7 +166,7 @@ pub fn direction(
     if is_magnetic(name) {
         bring_to_true(&mut verdict, meaning, known);
     }
-    if let Some([right, _]) = agreement(factor, 1.0) {
+    if let Some([right, _]) = agreement(factor) {
         let degrees = |angle: f64| sig(angle.to_degrees(), 3);
         if let Some(turned) = known.track.as_ref().and_then(|track| track.anticlockwise(&raw(factor))) {
             let quarter = (turned / FRAC_PI_2).round() * FRAC_PI_2;

@@ -8,7 +8,7 @@ use crate::numerals::sig;
 use crate::recording::Channel;
 use crate::recording::import::error::ImportError;
 use crate::recording::import::signals::log::{Column, Meaning, needed};
-use crate::recording::import::signals::motion::{AGREE, NO_COURSE, Track, ratio};
+use crate::recording::import::signals::motion::{AGREE, COHERENT, NO_COURSE, Track, ratio};
 use crate::recording::import::signals::place::places;
 use crate::recording::import::signals::signal::{Signal, Tidied, median};
 use crate::recording::import::signals::wind::doubts;
@@ -132,9 +132,6 @@ pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportErr
     }
     Ok(signals)
 }
-
-/// Coherence from which a ratio means something.
-const COHERENT: f64 = 0.6;
 
 /// The axes of position that are counted the wrong way, 0 for north and 1 for east: latitude and longitude against which every direction
 /// turns, from north or south and not from east or west as a mathematician's angle; or half a turn from which every direction points,

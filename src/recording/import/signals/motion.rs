@@ -68,6 +68,9 @@ pub struct Ratio {
     pub coherence: f64,
 }
 
+/// Coherence from which a ratio means something.
+pub const COHERENT: f64 = 0.6;
+
 /// The first of pairs as a multiple of the second: the ratio of their sizes with the sign of their product; `None` of fewer than ten,
 /// or of noughts.
 pub fn ratio(pairs: &[[f64; 2]]) -> Option<Ratio> {
