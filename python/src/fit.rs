@@ -158,7 +158,7 @@ pub struct Estimate {
     pub start: f64,
     /// Estimate.
     pub value: f64,
-    /// Standard error; None where the data do not determine the parameter, 0 where active constraints fix it.
+    /// Standard error; None where the data do not determine the parameter, 0 where active constraints leave nothing of it to the data.
     pub standard_error: Option<f64>,
     /// 95 % interval, low and high; None with the standard error.
     pub interval: Option<(f64, f64)>,

@@ -41,9 +41,9 @@ pub struct Estimate {
     pub start: f64,
     /// Estimate.
     pub value: f64,
-    /// Standard error; absent where the data do not determine the parameter, 0 where active constraints fix it.
+    /// Standard error; absent where the data do not determine the parameter, 0 where active constraints leave nothing of it to the data.
     pub standard_error: Option<f64>,
-    /// 95 % interval, absent with the standard error.
+    /// 95 % interval within the parameter's bounds, absent with the standard error.
     pub interval: Option<[f64; 2]>,
     /// `lower` or `upper` where the estimate lies on an active bound.
     pub at_bound: Option<&'static str>,
@@ -330,6 +330,7 @@ fn estimates(task: &Task, end: &End, covariances: &Covariances) -> Vec<Estimate>
     let estimate = |(j, i): (usize, &usize)| {
         let parameter = &task.model.parameters[*i];
         let standard_error = covariances.standard_error(task, j);
+        let (lower, upper) = task.bounds[j];
         Estimate {
             name: parameter.name.clone(),
             symbol: parameter.info.symbol,
@@ -337,7 +338,8 @@ fn estimates(task: &Task, end: &End, covariances: &Covariances) -> Vec<Estimate>
             start: task.start[j],
             value: end.p[j],
             standard_error,
-            interval: standard_error.map(|e| [end.p[j] - quantile * e, end.p[j] + quantile * e]),
+            interval: standard_error
+                .map(|e| [(end.p[j] - quantile * e).max(lower), (end.p[j] + quantile * e).min(upper)]),
             at_bound: end.active.bounds.iter().find(|(b, _)| *b == j).map(|(_, side)| *side),
         }
     };

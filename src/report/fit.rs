@@ -24,6 +24,9 @@ impl Estimate {
 
     fn interval_in_words(&self) -> String {
         match (self.at_bound, self.standard_error, self.interval) {
+            (Some(side), Some(e), Some([lower, upper])) if e > 0.0 => {
+                format!("{} at its {side} bound", interval(lower, upper, DIGITS))
+            }
             (Some(side), _, _) => format!("at its {side} bound"),
             (None, Some(0.0), _) => "fixed by constraints".into(),
             (None, _, Some([lower, upper])) => interval(lower, upper, DIGITS),

@@ -351,7 +351,7 @@ fn the_weight_of_a_prior_follows_the_residuals() {
 }
 
 #[test]
-fn an_active_bound_fixes_its_parameter_and_leaves_the_others_their_errors() {
+fn an_active_bound_leaves_its_parameter_what_lies_inside_and_the_others_their_errors() {
     let runs = recordings(&model(&STAR), 2.0, 60);
     let mut model = model(&TILDE);
     let i = model.index("rudder.lift1").unwrap();
@@ -360,7 +360,9 @@ fn an_active_bound_fixes_its_parameter_and_leaves_the_others_their_errors() {
     let estimate = fit.estimates.iter().find(|e| e.symbol == "p5").unwrap();
     assert_eq!(estimate.at_bound, Some("upper"), "{}", fit.report());
     assert!((estimate.value - 2.5).abs() < 1e-6);
-    assert_eq!(estimate.standard_error, Some(0.0));
+    // The recordings, without noise, are steep at the bound: little is left inside it, and nothing beyond.
+    let (error, [low, high]) = (estimate.standard_error.unwrap(), estimate.interval.unwrap());
+    assert!(0.0 < error && error < 0.1 && low < 2.5 && high == 2.5, "{error} {low} {high}");
     assert!(fit.active.iter().any(|a| a.sentence == "p5 <= 2.5"));
     assert!(fit.estimates.iter().filter(|e| e.symbol == "p0").all(|e| e.standard_error.unwrap() > 0.0));
 }

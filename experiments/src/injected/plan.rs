@@ -437,7 +437,7 @@ pub fn ci_slice(plan: &[Planned], campaign: u64) -> Vec<Planned> {
 /// Whether a diagnosis takes little time.
 fn is_short(c: &Configuration) -> bool {
     let steps = c.set.facts().steps;
-    c.runs.len() <= 9 && !c.freed && c.step >= steps[2]
+    c.runs.len() <= 6 && !c.freed && c.step >= steps[2]
 }
 
 #[cfg(test)]

@@ -50,6 +50,11 @@ pub(in crate::fit) fn inverse(h: &DMatrix<f64>, z: &DMatrix<f64>) -> Inverse {
 }
 
 impl Inverse {
+    /// Whether a direction has a part that is not determined.
+    pub fn loose(&self, direction: &DVector<f64>) -> bool {
+        self.directions[self.rank..].iter().any(|(_, d)| d.dot(direction).abs() >= 1e-3)
+    }
+
     /// Whether each variable is free of directions that are not determined.
     pub fn determined(&self) -> Vec<bool> {
         let loose = &self.directions[self.rank..];

@@ -187,6 +187,11 @@ impl<'a> Task<'a> {
 
     /// Directions in scaled parameters along which no active constraint changes.
     pub fn free_directions(&self, active: &ActiveSet) -> DMatrix<f64> {
+        null_space(&self.normals(active), self.scaling.scales.len())
+    }
+
+    /// Normals of active rows and bounds in scaled parameters, of length one.
+    pub fn normals(&self, active: &ActiveSet) -> Vec<DVector<f64>> {
         let n = self.scaling.scales.len();
         let mut normals: Vec<DVector<f64>> = Vec::new();
         normals.extend(active.rows.iter().map(|i| self.normal(&self.scaling, *i)));
@@ -195,7 +200,7 @@ impl<'a> Task<'a> {
             normal[*j] = 1.0;
             normals.push(normal);
         }
-        null_space(&normals, n)
+        normals
     }
 
     /// A matrix or vector by the parameters, by the scaled parameters.
