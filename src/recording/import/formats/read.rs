@@ -50,11 +50,29 @@ fn is_parquet(bytes: &[u8]) -> bool {
     bytes.starts_with(b"PAR1")
 }
 
-/// A build without the decoders says how to add them.
 #[cfg(not(feature = "parquet"))]
 fn read_parquet(path: &Path, _bytes: &[u8], _choices: &Choices) -> Result<Vec<Log>, ImportError> {
+    Err(unread_parquet(path))
+}
+
+/// A build without the decoders says how to add them.
+#[cfg(any(not(feature = "parquet"), test))]
+fn unread_parquet(path: &Path) -> ImportError {
     let message = "is a Parquet file, which this build does not read; build it with `cargo build --release --features parquet` \
                    (in a crate of your own: `cargo add trimtab --features parquet`), or write the log as CSV: \
                    `pandas.read_parquet(FILE).to_csv(\"log.csv\")`";
-    Err(ImportError::File { path: path.to_owned(), message: message.to_owned() })
+    ImportError::File { path: path.to_owned(), message: message.to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_build_without_the_decoders_names_the_line_that_adds_them() {
+        let said = unread_parquet(Path::new("log.parquet")).to_string();
+        for part in ["log.parquet", "is a Parquet file", "cargo build --release --features parquet", "log.csv"] {
+            assert!(said.contains(part), "{said}");
+        }
+    }
 }
