@@ -35,7 +35,7 @@ Every fit is solved by Ipopt. It returns the best feasible point of all that it 
     stopped the solver: max_iterations, max_evaluations and max_seconds of [fit] always limit it. It is called converged only after a second solve from \
     a disturbed point found no lower cost. Damping, added mass, thrust and drag keep their physical signs (the bounds of each term), and the mass matrix stays \
     invertible. Its first line says what the residuals say against it: a cost far above the noise of the sensors, windows \
-    too long to be predicted in open loop, residuals that are alike.
+    too long to be predicted in open loop, a recording or an input apart from the others.
 
 The report gives every estimate with standard error and 95 % interval, the active constraints, what the \
     data do not determine, and how the solver ended.";

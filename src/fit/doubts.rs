@@ -1,5 +1,5 @@
-//! What the residuals of a fit say against its estimates: model error, windows that are too long, residuals alike.
-//! It computes five statistics and compares each with a limit; it changes no estimate.
+//! What the residuals of a fit say against its estimates: model error, windows that are too long, a recording that stands apart.
+//! It computes statistics and compares each with a limit; it changes no estimate.
 //!
 //! With the weighted residual `e_c(k)` of channel c at sample k of a run,
 //!
@@ -9,19 +9,17 @@
 //! | apart | Grubbs's test of `ln (mean e^2 / mean s^2)` over the recordings, the largest | p = 0.001 | hard manoeuvres are described worse than easy ones |
 //! | growth | exponent b of `rms e ~ t^b` in the velocities between the second and the last quarter of the windows | 1 | a force that is wrong makes errors of velocity grow linearly at most; what grows faster is an open loop that runs away |
 //! | loss | `mean e^2` in sway and yaw rate in the last quarter over the variance measured there | 1/2 | more of the motion is lost than is predicted; windows are too long for it where the first quarter loses less than half as much |
-//! | likeness | integrated autocorrelation `1 + 2 sum rho(l)`, and the design effect over recordings | 2 | standard errors of independent residuals are 1.4 times too small |
+//! | likeness | integrated autocorrelation `1 + 2 sum rho(l)` | none | along a simulated trajectory residuals are always alike; standard errors allow for it (see `covariance`) |
 //!
 //! The second difference of white noise of variance s^2 has the variance 6 s^2, and a smooth error has next to none: it is
 //! taken of the residuals, from which the simulation has removed most of the motion, so that it measures the sensors. Sources:
-//! von Neumann, Ann. Math. Stat. 12 (1941) 367-395 for successive differences; Kish, Survey Sampling (1965), for the design
-//! effect.
+//! von Neumann, Ann. Math. Stat. 12 (1941) 367-395 for successive differences.
 
 use super::backwards::{Estimated, backwards};
-use super::covariance::Covariances;
 use super::inputs::{APART_RECORDINGS, INPUT_CHANCE, InputError};
 use super::objectives::cost::Cost;
 use crate::fit::solver::task::Task;
-use crate::numerals::{number_of, sig};
+use crate::numerals::sig;
 use crate::ranks::{ExactSums, Ranks};
 use crate::recording::Run;
 use crate::ship::Ship;
@@ -39,9 +37,6 @@ pub const GROWTH_LIMIT: f64 = 1.0;
 
 /// Share of the measured variance of sway and yaw rate that may be lost in the last quarter of the windows.
 pub const LOSS_LIMIT: f64 = 0.5;
-
-/// How many residuals may count as one before they are called clustered.
-pub const LIKENESS_LIMIT: f64 = 2.0;
 
 /// Largest chance at which a recording is said to be described far worse than the others: a tenth of the usual hundredth, since hard
 /// manoeuvres are described worse than easy ones.
@@ -83,8 +78,6 @@ pub enum DoubtKind {
     ModelError,
     /// The windows are too long to be predicted in open loop.
     WindowsTooLong,
-    /// Residuals of a run or a recording are alike.
-    Clustered,
     /// A recording is described far worse than the others.
     Apart,
     /// The input of one recording or session has another gain or zero than in the others.
@@ -148,12 +141,7 @@ impl ResidualStatistics {
     }
 
     /// What the statistics say against the fit.
-    pub(in crate::fit) fn doubts(
-        &self,
-        input: Option<&InputError>,
-        covariances: &Covariances,
-        parameters: usize,
-    ) -> Vec<Doubt> {
+    pub(in crate::fit) fn doubts(&self, input: Option<&InputError>) -> Vec<Doubt> {
         let of_input = input.map(|error| Doubt {
             kind: DoubtKind::Input,
             value: error.p,
@@ -175,10 +163,7 @@ impl ResidualStatistics {
                 sig(value, 2)
             ),
         });
-        [of_input, apart, model_error, self.too_long(), self.clustered(covariances, parameters)]
-            .into_iter()
-            .flatten()
-            .collect()
+        [of_input, apart, model_error, self.too_long()].into_iter().flatten().collect()
     }
 
     fn set_apart(&self) -> Option<Doubt> {
@@ -208,25 +193,6 @@ impl ResidualStatistics {
         let sentence =
             format!("the windows are too long to be predicted in open loop: {what} (shorten `window` in the study)");
         Some(Doubt { kind: DoubtKind::WindowsTooLong, value, limit, sentence })
-    }
-
-    fn clustered(&self, covariances: &Covariances, parameters: usize) -> Option<Doubt> {
-        // Independent recordings give a design effect of 1 with this scatter.
-        let freedom = covariances.clusters.saturating_sub(1) * parameters;
-        let by_chance = 1.0 + 3.0 * (2.0 / freedom.max(1) as f64).sqrt();
-        let by_recording = covariances.design_effect.filter(|d| *d > LIKENESS_LIMIT.max(by_chance));
-        let by_sample = self.likeness.filter(|l| *l > LIKENESS_LIMIT);
-        let value = by_recording.unwrap_or(0.0).max(by_sample.unwrap_or(0.0));
-        (value > 0.0).then(|| Doubt {
-            kind: DoubtKind::Clustered,
-            value,
-            limit: LIKENESS_LIMIT,
-            sentence: format!(
-                "residuals are alike within runs and recordings, {value:.0} of them as good as one (the intervals allow for it as \
-                 far as {} can show)",
-                number_of(covariances.clusters, "recording")
-            ),
-        })
     }
 }
 

@@ -8,7 +8,7 @@
 //! | `settings` | section `[fit]` of a study |
 //! | `covariance` | covariances, and what the data do not determine |
 //! | `backwards` | actuators that push against their orders |
-//! | `doubts` | what residuals say against a fit: model error, windows too long, residuals alike |
+//! | `doubts` | what residuals say against a fit: model error, windows too long, a recording apart |
 //! | `inputs` | whether one recording's rudder angle or propeller rate has another gain or zero than the others' |
 //! | `summary` | the outcome: estimates, intervals, active constraints; [`fit`] joins all |
 //! | [`multistart`] | the same fit from many starts |
@@ -34,7 +34,7 @@ pub use crate::ipopt::Counts;
 #[cfg(feature = "ipopt")]
 pub use covariance::{Covariance, CovarianceKind, SANDWICH_FROM};
 #[cfg(feature = "ipopt")]
-pub use doubts::{Doubt, DoubtKind, GROWTH_LIMIT, LIKENESS_LIMIT, MODEL_ERROR_LIMIT, ResidualStatistics};
+pub use doubts::{Doubt, DoubtKind, GROWTH_LIMIT, MODEL_ERROR_LIMIT, ResidualStatistics};
 pub use error::FitError;
 #[cfg(feature = "ipopt")]
 pub use inputs::{INPUT_CHANCE, InputError, InputErrorKind, SeenInput};

@@ -280,7 +280,7 @@ fn describe(task: &Task, evaluations: &Evaluations, noise: Option<&Noise>, unit:
     let estimates = estimates(task, &end, &covariances);
     let free = estimates.iter().map(|e| (e.name.as_str(), e.value, e.standard_error, e.unit));
     let mut doubts = against_orders(&model.ship, free);
-    doubts.extend(statistics.doubts(input_error.as_ref(), &covariances, task.scaling.scales.len()));
+    doubts.extend(statistics.doubts(input_error.as_ref()));
     let mut validity = Count::new(&model);
     task.runs.iter().for_each(|run| validity.add(validity::samples(&run)));
     validity.gather(task.cost.ranks());

@@ -156,3 +156,19 @@ fn a_new_ship_and_its_model_are_taken_by_a_study() {
         &["did you mean `coaster`?", "bulk_carrier"],
     );
 }
+
+#[test]
+fn trials_from_particulars_have_intervals_though_some_drawn_ships_have_no_resistance() {
+    let study = Study::new();
+    let particulars =
+        ["new", "--lpp", "80", "--breadth", "15", "--draught", "4.2", "--type", "ferry", "--speed", "7.2"];
+    study.does(&[&particulars[..], &["--out", "new.toml", "--model", "priors.toml"]].concat());
+    let trial = ["maneuver", "turning", "--ship", "new.toml", "--model", "priors.toml", "--draws", "60"];
+    let json = study.json(&trial);
+    for measure in ["advance", "tactical_diameter"] {
+        let interval = at(&json, &format!("result.trials.0.intervals.{measure}")).as_array().unwrap();
+        let value = at(&json, &format!("result.trials.0.measures.{measure}")).as_f64().unwrap();
+        assert!(interval[0].as_f64().unwrap() <= value && value <= interval[1].as_f64().unwrap(), "{interval:?}");
+    }
+    contains_all(&study.does(&trial), &["% of the drawn ships, which cannot hold the approach speed"]);
+}

@@ -15,8 +15,8 @@ use serde::Serialize;
 use std::path::PathBuf;
 use trimtab::evaluate::maneuver::{
     Approach, DRAWS, Drawn, Ended, Known, ManeuverError, ManeuverSettings, Measured, SEED, Side, Trial,
-    calm_water_of_depth, course_stable, drawn_from, is_stability_open, of_priors, pull_out_trial, set_intervals_from,
-    spiral_trial, stopping_trial, turning_trial, zigzag_trial,
+    calm_water_of_depth, course_stable, drawn_able, drawn_from, is_stability_open, of_priors, pull_out_trial,
+    set_intervals_from, spiral_trial, stopping_trial, turning_trial, zigzag_trial,
 };
 use trimtab::files::Names;
 use trimtab::model::Model;
@@ -227,6 +227,8 @@ struct Prepared {
     known: Known,
     /// Draws of it.
     drawn: Vec<Drawn>,
+    /// Share of the drawn ships that cannot hold the approach speed, which are left out.
+    unable: f64,
     seed: u64,
 }
 
@@ -258,7 +260,14 @@ impl Prepared {
         let (model_path, fitted) = loaded.uncertainty()?;
         let known = if fitted.is_some() { Known::ByFit } else { Known::Before };
         let uncertainty = fitted.or_else(|| of_priors(&model));
-        let drawn = uncertainty.as_ref().map_or_else(Vec::new, |u| drawn_from(known, &model, u, args.draws, args.seed));
+        let (drawn, unable) = match (&uncertainty, known) {
+            (None, _) => (Vec::new(), 0.0),
+            (Some(u), Known::ByFit) => (drawn_from(known, &model, u, args.draws, args.seed), 0.0),
+            (Some(u), Known::Before) => {
+                let can = |theta: &[f64]| settings.approach(&model, theta).is_ok();
+                drawn_able(&model, u, args.draws, args.seed, can)
+            }
+        };
         let (model_path, sessions, seed) = (model_path.to_owned(), model.sessions.len(), args.seed);
         Ok(Self {
             model,
@@ -272,6 +281,7 @@ impl Prepared {
             known,
             uncertainty,
             drawn,
+            unable,
             seed,
         })
     }
@@ -325,6 +335,12 @@ impl Prepared {
                     d.covariance,
                     d.seed
                 ));
+                if self.unable > 0.0 {
+                    notes.push(format!(
+                        "Left out: {} % of the drawn ships, which cannot hold the approach speed.",
+                        sig(100.0 * self.unable, 2)
+                    ));
+                }
                 if !d.undetermined.is_empty() {
                     notes.push(format!(
                         "Fixed at their values, as the data do not determine them: {}.",
@@ -523,7 +539,9 @@ fn text<M: Listed>(p: &Prepared, trials: &[Trial<M>]) -> String {
     if !judged {
         text.truncate(text.rfind("\n\n").unwrap_or(text.len()));
     }
-    let notes = trials.iter().filter_map(ended_note).chain(criteria_note(ship).filter(|_| judged));
+    let without = p.draws().filter(|_| trials.iter().any(|t| t.ended == Ended::Complete && t.intervals.is_empty()));
+    let without = without.map(|_| "No interval where fewer than 95 % of the drawn ships reach a measure.".to_owned());
+    let notes = trials.iter().filter_map(ended_note).chain(criteria_note(ship).filter(|_| judged)).chain(without);
     for note in notes {
         text += &format!("\n{note}");
     }

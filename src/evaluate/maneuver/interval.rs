@@ -13,6 +13,8 @@ use rayon::prelude::*;
 pub const DRAWS: usize = 200;
 /// Seed of the draws.
 pub const SEED: u64 = 1;
+/// Draws for each that is wanted, of which those that cannot sail are left out.
+const TRIES: usize = 3;
 /// Share of the draws that must reach a measure, so that it has an interval.
 const REACHED: f64 = 0.95;
 /// Share of a drawn deviation that is sailed, to either side of the estimate. A covariance is the inverse of the curvature of the cost at
@@ -67,6 +69,24 @@ pub fn drawn_from(known: Known, model: &Model, uncertainty: &Uncertainty, count:
     };
     let both = |d: Vec<f64>| [vector(&d, known.step()), vector(&d, -known.step())];
     uncertainty.deviations(count, seed).into_iter().map(both).collect()
+}
+
+/// So many pairs of draws of what is known before any data, each of a ship that `can` sail, and the share of all drawn ships that cannot: the
+/// spreads of single coefficients, taken as independent, allow for resistances below zero, and no ship has one.
+pub fn drawn_able(
+    model: &Model,
+    uncertainty: &Uncertainty,
+    count: usize,
+    seed: u64,
+    can: impl Fn(&[f64]) -> bool + Sync,
+) -> (Vec<Drawn>, f64) {
+    let all: Vec<Vec<f64>> =
+        drawn_from(Known::Before, model, uncertainty, TRIES * count, seed).into_iter().flatten().collect();
+    let able: Vec<bool> = all.par_iter().map(|theta| can(theta)).collect();
+    let unable = able.iter().filter(|a| !**a).count() as f64 / all.len().max(1) as f64;
+    let mut ships = all.into_iter().zip(able).filter_map(|(theta, able)| able.then_some(theta));
+    let pairs = std::iter::from_fn(|| Some([ships.next()?, ships.next()?]));
+    (pairs.take(count).collect(), unable)
 }
 
 /// What is known of a model that was not fitted: the standard deviations of its priors, and those that the terms give for estimated

@@ -20,7 +20,9 @@ pub use approach::{Approach, ManeuverSettings, Recorded, Source};
 pub use calm::{calm_water, calm_water_of_depth};
 pub use error::ManeuverError;
 pub use found::{Found, Kind, PassedOver, approach_speed, find};
-pub use interval::{DRAWS, Drawn, Known, SEED, drawn, drawn_from, of_priors, set_intervals, set_intervals_from};
+pub use interval::{
+    DRAWS, Drawn, Known, SEED, drawn, drawn_able, drawn_from, of_priors, set_intervals, set_intervals_from,
+};
 pub use measured::{MeasuredTrial, Measures, Simulated, Taken, measured};
 pub use measures::{Measured, PullOut, Quantity, Spiral, Steady, Stopping, Turning, Zigzag};
 pub use nomoto::Nomoto;

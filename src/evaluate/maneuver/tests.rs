@@ -115,6 +115,38 @@ fn a_zigzag_of_known_heading_gives_its_overshoots_and_period() {
 }
 
 #[test]
+fn a_noisy_zigzag_of_one_row_a_second_gives_its_overshoots_whatever_rows_the_rudder_is_put_over_at() {
+    use rand::SeedableRng;
+    use rand_distr::{Distribution, Normal};
+    let (amplitude, heading) = (14.0_f64.to_radians(), 10.0_f64.to_radians());
+    let noise = Normal::new(0.0, 0.15_f64.to_radians()).unwrap();
+    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(5);
+    for phase in 0..10 {
+        // 30 s of approach, and up to 1.5 deg from row to row at the executes; a row may be missing.
+        let mut track = Track::default();
+        let (mut side, mut executes) = (1.0, vec![30]);
+        for k in 0..240 {
+            let t = k as f64 - 30.0 + if k < 30 { 0.0 } else { 0.1 * phase as f64 };
+            let psi = if k < 30 { 0.0 } else { amplitude * (2.0 * PI * t / 60.0).sin() };
+            if side * psi >= heading {
+                side = -side;
+                executes.push(k);
+            }
+            let recorded = if k % 50 == 49 { f64::NAN } else { psi + noise.sample(&mut rng) };
+            track.t.push(k as f64);
+            track.states.push([2.0 * t, 0.0, recorded, 2.0, 0.0, 0.0]);
+            track.delta.push(if k <= 30 { 0.0 } else { side * heading });
+            track.n.push(1.0);
+        }
+        let m = zigzag(&track, &executes, heading);
+        assert!(m.overshoots.len() > 4, "{m:?}");
+        for o in &m.overshoots[..4] {
+            assert!((o.to_degrees() - 4.0).abs() < 0.3, "{phase}: {:?}", m.overshoots);
+        }
+    }
+}
+
+#[test]
 fn the_approach_is_balanced_whichever_of_speed_and_rate_is_given() {
     let model = model(Form::Regular);
     let theta = model.values();

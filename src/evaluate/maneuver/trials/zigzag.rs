@@ -9,6 +9,10 @@ use crate::evaluate::maneuver::sail::{Orders, sail};
 use crate::evaluate::maneuver::track::Track;
 use crate::evaluate::maneuver::trial::{Intervals, Side, Trial};
 use crate::model::Model;
+use nalgebra::{DMatrix, DVector};
+
+/// Samples that a mean heading or a parabola of headings takes at least.
+const FEWEST: usize = 5;
 
 /// Measures a zigzag of `heading` \[rad\] on a track whose rudder was put over at the samples `executes`.
 pub fn zigzag(track: &Track, executes: &[usize], heading: f64) -> Zigzag {
@@ -23,19 +27,12 @@ pub fn zigzag(track: &Track, executes: &[usize], heading: f64) -> Zigzag {
 
     let turned = |s: &[f64; 6]| side * (s[2] - course);
     let answered = track.first_above(first, heading, turned);
-    // The rudder is put over at equal headings to either side of the course that is steered. That course lies midway, also
-    // for a ship that was slightly off it at the first execute.
-    let steered = match later {
-        [second, third, ..] => 0.5 * (track.states[*second][2] + track.states[*third][2]),
-        _ => course,
-    };
+    let steered = steered(track, executes);
     // An overshoot is complete once the ship has turned back: at the next execute, or past a peak within the track.
     let overshoots = later.iter().enumerate().filter_map(|(i, &from)| {
         let towards = if i % 2 == 0 { side } else { -side };
         let to = later.get(i + 1).copied().unwrap_or(track.len() - 1);
-        let beyond = |k: usize| towards * (track.states[k][2] - steered) - heading;
-        let peak = (from..=to).max_by(|&a, &b| beyond(a).total_cmp(&beyond(b)))?;
-        (peak < to).then(|| beyond(peak).max(0.0))
+        farthest(track, from, to, towards).map(|psi| (towards * (psi - steered) - heading).max(0.0))
     });
     let back = later.first().and_then(|&second| track.first_above(second, 0.0, |s| -turned(s)));
     Zigzag {
@@ -54,6 +51,43 @@ pub fn zigzag(track: &Track, executes: &[usize], heading: f64) -> Zigzag {
         period: (executes.len() > 3).then(|| track.t[executes[3]] - track.t[executes[1]]),
         nomoto: later.last().filter(|_| later.len() > 1).and_then(|&last| nomoto(track, first, last)),
     }
+}
+
+/// The course to either side of which the rudder is put over \[rad\]. It lies midway between the headings of the second and the third
+/// execute, also for a ship that was slightly off it at the first: a heading is known there to within what the ship turns between two samples,
+/// q, so that the middle has the standard error `q / sqrt(24)`. It is the mean heading of the approach where that varied by less.
+fn steered(track: &Track, executes: &[usize]) -> f64 {
+    let first = executes.first().copied().unwrap_or(0);
+    let approach: Vec<f64> = track.states[..=first].iter().map(|s| s[2]).filter(|psi| psi.is_finite()).collect();
+    let mean = approach.iter().sum::<f64>() / approach.len() as f64;
+    let [_, second, third, ..] = *executes else {
+        return track.states[first][2];
+    };
+    let midway = 0.5 * (track.states[second][2] + track.states[third][2]);
+    let between = |k: usize| (track.states[k][2] - track.states[k - 1][2]).powi(2);
+    let error = (0.5 * (between(second) + between(third)) / 24.0).sqrt();
+    let variance = approach.iter().map(|psi| (psi - mean).powi(2)).sum::<f64>() / (approach.len() - 1).max(1) as f64;
+    if approach.len() >= FEWEST && variance.sqrt() < error { mean } else { midway }
+}
+
+/// The heading farthest to one side between two executes \[rad\]: the top of the parabola of least squares through the samples that are no
+/// farther from the farthest one than half the time since the execute, so that noise of a sample does not count; `None` where the ship has not
+/// turned back.
+fn farthest(track: &Track, from: usize, to: usize, towards: f64) -> Option<f64> {
+    let heading = |k: usize| towards * track.states[k][2];
+    let finite = || (from..=to).filter(|k| heading(*k).is_finite());
+    let peak = finite().max_by(|&a, &b| heading(a).total_cmp(&heading(b))).filter(|peak| *peak < to)?;
+    let reach = 0.5 * (track.t[peak] - track.t[from]);
+    let near: Vec<usize> = finite().filter(|k| (track.t[*k] - track.t[peak]).abs() <= reach).collect();
+    let powers = DMatrix::from_fn(near.len(), 3, |i, j| ((track.t[near[i]] - track.t[peak]) / reach).powi(j as i32));
+    let values = DVector::from_iterator(near.len(), near.iter().map(|k| heading(*k) - heading(peak)));
+    let fitted = || (&powers.transpose() * &powers).cholesky().map(|c| c.solve(&(powers.transpose() * values)));
+    // A parabola that bends the other way, or whose top lies outside the samples, is none of a ship that turns back.
+    let top = (near.len() >= FEWEST).then(fitted).flatten().and_then(|c| {
+        let at = -0.5 * c[1] / c[2];
+        (c[2] < 0.0 && at.abs() <= 1.0).then(|| c[0] + 0.5 * c[1] * at)
+    });
+    Some(towards * (heading(peak) + top.unwrap_or(0.0)))
 }
 
 /// The samples at which the rudder of a recorded zigzag begins to move to the other side: for each passage beyond half the
