@@ -7,7 +7,7 @@ use super::answer::diagnosis::{Diagnosis, Trace};
 use super::answer::models::{OnUnseen, Whose, on_unseen, written};
 use super::answer::sailed::{Sailed, sailed};
 use super::answer::summary::{absorbed, adequacy, budget, confusable, detectable, moves, ranking, resolved, traces};
-use super::answer::words::{Missing, Said, headline, next_trial};
+use super::answer::words::{Missing, Said, differing, headline, next_trial};
 use super::error::DiagnoseError;
 use super::evidence::generic::corrected;
 use super::evidence::set_aside::Divided;
@@ -19,7 +19,7 @@ use super::proof::improved::{trimmed, uncertainty};
 use super::proof::prove::{HeldOut, prove, scores};
 use super::proof::stability::Stability;
 use super::search::base::{BaseFit, Question};
-use super::search::decide::Unlisted;
+use super::search::decide::{Unlisted, Verdict};
 use super::search::screen::screen;
 use super::settings::Settings;
 use crate::likelihood::estimate::Estimate;
@@ -29,6 +29,7 @@ use crate::recording::Run;
 use crate::uncertainty::Uncertainty;
 use crate::validity::{self, Coverage};
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 
 /// Diagnoses a model against recordings.
 ///
@@ -183,8 +184,14 @@ fn report(
     let traces = traces(&fit.runs, fit.integration, base, last.map(|_| found));
     let verdict = answer.verdict;
     let hull_budget = budget(found);
+    let recordings = fit.runs.iter().map(|run| &run.recording).collect::<BTreeSet<_>>().len();
+    let quiet = matches!(verdict, Verdict::NothingMissing | Verdict::Random);
+    let differing = if quiet { differing(&tests.location.windows, recordings) } else { Vec::new() };
     let said = Said {
         hull: &hull_budget,
+        windows: &tests.location.windows,
+        differing: &differing,
+        recordings,
         findings: &answer.findings,
         withdrawn: &answer.withdrawn,
         following: &answer.base.following,
@@ -233,6 +240,7 @@ fn report(
         base: trimmed(&fits.base.model, question.model, &fits.base.free),
         findings: answer.findings,
         withdrawn: answer.withdrawn,
+        differing: differing.into_iter().map(str::to_owned).collect(),
     }
 }
 
@@ -240,7 +248,6 @@ fn report(
 mod tests {
     use super::*;
     use crate::diagnose::example::{model, runs, with};
-    use crate::diagnose::search::decide::Verdict;
     use std::sync::Mutex;
 
     #[test]

@@ -166,6 +166,9 @@ pub struct Diagnosis {
     pub findings: Vec<Finding>,
     /// What was selected and is not named, with the grade that says why.
     pub withdrawn: Vec<Finding>,
+    /// One or two recordings in which forces act that the model does not have and no other shows, where nothing is named.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub differing: Vec<String>,
     /// Whether the answer is the same on transformed recordings; absent where nothing was found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stability: Option<Stability>,

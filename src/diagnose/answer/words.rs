@@ -11,9 +11,10 @@ use crate::diagnose::proof::grade::{Grade, LawGrade};
 use crate::diagnose::proof::influence::Following;
 use crate::diagnose::proof::unseen::FindingProof;
 use crate::diagnose::search::decide::Verdict;
-use crate::diagnose::settings::{BENT, GUST_SHARE};
+use crate::diagnose::settings::{BENT, BEYOND_DOUBT, FEWEST_RECORDINGS, GUST_SHARE};
 use crate::numerals::{number_of, sig};
 use crate::physics::Kind;
+use std::collections::BTreeSet;
 
 /// What is missing and not in the catalogue, as far as the tests show it.
 pub enum Missing<'a> {
@@ -121,6 +122,12 @@ pub struct Said<'a> {
     pub worse: Option<[f64; 2]>,
     /// The ship's own coefficients beside what is known of such coefficients.
     pub hull: &'a [Budget],
+    /// Windows with a force that the base model does not have.
+    pub windows: &'a [Window],
+    /// Those of the recordings that differ from all others, see [`differing`].
+    pub differing: &'a [&'a str],
+    /// Recordings that were looked at.
+    pub recordings: usize,
 }
 
 /// The verdict in a sentence or two.
@@ -146,15 +153,53 @@ pub fn headline(verdict: Verdict, said: &Said) -> String {
             "The integration step, not the ship: explicit Euler steps of one sample period reproduce the recordings to rounding."
                 .into()
         }
-        Verdict::Random if said.form_holds => "An unknown force acts, but nothing about it repeats: gusts.".into(),
-        Verdict::Random => "An unknown force is left in which nothing repeats: the ship's own forces have another form than the model \
-                            gives them, or gusts act beside them."
-            .into(),
+        Verdict::Random => {
+            let what = if said.form_holds {
+                "An unknown force acts, but nothing about it repeats: gusts."
+            } else {
+                "An unknown force is left in which nothing repeats: the ship's own forces have another form than the model gives them, or \
+                 gusts act beside them."
+            };
+            what.to_owned() + &but_for(said)
+        }
         Verdict::Insufficient if !said.holds => not_followed(said.following),
         Verdict::Insufficient => withdrawn(Grade::NotIsolated)
             .map_or_else(|| "These recordings cannot answer: too few runs.".into(), not_isolated),
-        Verdict::NothingMissing => nothing(said) + &of_another_form(said.form_holds) + &bent(said.hull),
+        Verdict::NothingMissing => {
+            nothing(said) + &but_for(said) + &of_another_form(said.form_holds) + &bent(said.hull)
+        }
     }
+}
+
+/// The recordings that differ from all others: forces act in them, where chance does not make them, that the model does not have. None where
+/// they are not few, as the others, most of them, must speak for the model.
+pub fn differing(windows: &[Window], recordings: usize) -> Vec<&str> {
+    let surely = windows.iter().filter(|w| w.p < BEYOND_DOUBT);
+    let names: BTreeSet<&str> = surely.map(|w| w.run.as_str()).collect();
+    let few = names.len() < FEWEST_RECORDINGS && 2 * names.len() < recordings;
+    names.into_iter().filter(|_| few).collect()
+}
+
+/// That a few recordings differ from the others, with when.
+fn but_for(said: &Said) -> String {
+    let names = said.differing;
+    if names.is_empty() {
+        return String::new();
+    }
+    let when = |name: &&str| {
+        let own = || said.windows.iter().filter(|w| w.run == *name && w.p < BEYOND_DOUBT);
+        let from = own().map(|w| w.start).fold(f64::INFINITY, f64::min);
+        let to = own().map(|w| w.end).fold(f64::NEG_INFINITY, f64::max);
+        format!("`{name}` (between {} and {} s)", sig(from, 4), sig(to, 4))
+    };
+    let named = names.iter().map(when).collect::<Vec<_>>().join(" and ");
+    let (verb, log, its) =
+        if names.len() == 1 { ("differs", "that log", "its") } else { ("differ", "those logs", "their") };
+    format!(
+        " But {named} {verb}: forces act there that the model does not have and the other {} do not show (p < {BEYOND_DOUBT:e}). Look at {log}: \
+         {its} rudder angle, propeller rate or clock may not be what acted, or something touched the ship; leave it out and compare.",
+        number_of(said.recordings - names.len(), "recording")
+    )
 }
 
 /// That the fit needs a coefficient of the ship that no such ship has: what acts the same in all recordings may be in it.
@@ -385,6 +430,9 @@ mod tests {
                     missing,
                     worse: None,
                     hull: &[],
+                    windows: &[],
+                    differing: &[],
+                    recordings: 9,
                 },
             )
         };
@@ -441,6 +489,46 @@ mod tests {
         );
         for verdict in [Verdict::Numerics, Verdict::Random, Verdict::Insufficient, Verdict::NothingMissing] {
             assert!(headline(verdict, &[], None).ends_with('.'), "{verdict:?}");
+        }
+    }
+
+    #[test]
+    fn a_recording_that_differs_from_all_others_is_named_where_nothing_is_missing() {
+        let window = |run: &str, start: f64, p: f64| Window {
+            run: run.into(),
+            session: String::new(),
+            start,
+            end: start + 10.0,
+            force: [0.0; 3],
+            error: [1.0; 3],
+            statistic: 90.0,
+            p,
+            index: 0,
+            samples: (0, 1),
+        };
+        let one = [window("turn 6", 63.0, 1e-14), window("turn 6", 313.0, 1e-9), window("turn 7", 5.0, 1e-3)];
+        assert_eq!(differing(&one, 24), ["turn 6"]);
+        // Of two recordings either may differ from the other, and what many recordings have is no matter of a few.
+        assert!(differing(&one, 2).is_empty());
+        let many: Vec<Window> = ["a", "b", "c"].iter().map(|run| window(run, 0.0, 1e-14)).collect();
+        assert_eq!((differing(&many, 24).len(), differing(&many[..2], 24).len()), (0, 2));
+        let following = Following { runs: 24, better_than_steady: 24, cvdm: None, steady: None, rank_share: 0.2 };
+        let said = Said {
+            findings: &[],
+            withdrawn: &[],
+            following: &following,
+            holds: true,
+            form_holds: true,
+            missing: None,
+            worse: None,
+            hull: &[],
+            windows: &one,
+            differing: &differing(&one, 24),
+            recordings: 24,
+        };
+        for verdict in [Verdict::NothingMissing, Verdict::Random] {
+            let said = headline(verdict, &said);
+            assert!(said.contains("`turn 6` (between 63 and 323 s) differs") && said.contains("other 23"), "{said}");
         }
     }
 

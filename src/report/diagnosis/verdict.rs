@@ -56,6 +56,10 @@ pub(super) fn title(d: &Diagnosis) -> String {
         let kinds: Vec<Kind> = first.confidence_set.iter().map(|name| kind_of(&d.model, name)).collect();
         return one_of_words(&kinds).to_owned();
     }
+    if let (Verdict::NothingMissing, [_, ..]) = (d.verdict, &d.differing[..]) {
+        let count = if d.differing.len() == 1 { "ONE RECORDING" } else { "TWO RECORDINGS" };
+        return format!("NOTHING MISSING, BUT FOR {count}");
+    }
     let led = matches!(d.verdict, Verdict::Named | Verdict::Sensor);
     let Some(first) = d.findings.first().filter(|_| led) else { return verdict_words(d.verdict).to_owned() };
     let kinds = || d.findings.iter().filter(|f| f.grade == first.grade).map(|f| f.kind);

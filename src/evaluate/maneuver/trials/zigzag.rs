@@ -67,7 +67,7 @@ fn steered(track: &Track, executes: &[usize]) -> f64 {
     let between = |k: usize| (track.states[k][2] - track.states[k - 1][2]).powi(2);
     let error = (0.5 * (between(second) + between(third)) / 24.0).sqrt();
     let variance = approach.iter().map(|psi| (psi - mean).powi(2)).sum::<f64>() / (approach.len() - 1).max(1) as f64;
-    if approach.len() >= FEWEST && variance.sqrt() < error { mean } else { midway }
+    if approach.len() >= FEWEST && (variance.sqrt() < error || error.is_nan()) { mean } else { midway }
 }
 
 /// The heading farthest to one side between two executes \[rad\]: the top of the parabola of least squares through the samples that are no
