@@ -19,7 +19,7 @@ use crate::recording::audit::motion::response::Curve;
 use crate::recording::audit::motion::series::mean_square;
 use crate::recording::audit::motion::sources::Sources;
 use crate::recording::audit::record::Responses;
-use crate::recording::audit::values::gear::{ACTUATORS, Fastest, leaps as gear_leaps};
+use crate::recording::audit::values::gear::{Fastest, leaps as gear_leaps};
 use crate::recording::audit::values::held::{Repeats, held, repeats};
 use crate::recording::audit::values::length::{Length, shorter};
 use crate::recording::audit::values::orders::{Leap, ordered};
@@ -65,8 +65,8 @@ pub struct Evidence {
     keeps_speed: bool,
     /// The largest leap of the rudder.
     leap: Option<Leap>,
-    /// The fastest change of rudder and propeller.
-    fastest: [Option<Fastest>; 2],
+    /// The fastest change of the rudder.
+    fastest: Option<Fastest>,
     /// How its velocities scatter.
     scatter: Scatter,
     /// What its channels repeat.
@@ -111,7 +111,7 @@ impl Evidence {
             unpowered: is_unpowered(recording, ship),
             keeps_speed: keeps_speed(recording, ship),
             leap: Leap::of(recording),
-            fastest: ACTUATORS.map(|channel| Fastest::of(recording, channel)),
+            fastest: Fastest::of(recording, Channel::Delta),
             scatter: Scatter::of(recording),
             repeats: repeats(recording),
             length: Length::of(recording).filter(|_| run.from.is_none() && run.to.is_none()),
@@ -224,13 +224,11 @@ pub fn across(runs: &[Evidence], ship: &Ship) -> Vec<Shared> {
             found.push(shared);
         }
     }
-    for (i, channel) in ACTUATORS.into_iter().enumerate() {
-        // A damaged value leaps too.
-        let moved = |r: &Evidence| !r.damaged.contains(&channel);
-        let of: Vec<(&str, Option<&Fastest>)> =
-            runs.iter().map(|r| (r.run.as_str(), r.fastest[i].as_ref().filter(|_| moved(r)))).collect();
-        found.extend(gear_leaps(channel, &of));
-    }
+    // A damaged value leaps too.
+    let moved = |r: &Evidence| !r.damaged.contains(&Channel::Delta);
+    let fastest: Vec<(&str, Option<&Fastest>)> =
+        runs.iter().map(|r| (r.run.as_str(), r.fastest.as_ref().filter(|_| moved(r)))).collect();
+    found.extend(gear_leaps(&fastest));
     let repeated: Vec<(&str, &[Repeats])> = runs.iter().map(|r| (r.run.as_str(), &r.repeats[..])).collect();
     found.extend(held(&repeated));
     let lengths: Vec<(&str, Option<Length>)> = runs.iter().map(|r| (r.run.as_str(), r.length)).collect();
@@ -546,7 +544,13 @@ fn lagging(pair: &Pair, seconds: f64, whose: &str, than: &str) -> Issue {
     let text = format!("{whose}runs about {} s {order} {than}", sig(seconds.abs(), 2));
     let also = if pair.channel == Channel::X { " (and for `y`)" } else { "" };
     let delay = format!("`delay = {}` for `{}`{also} in a column map", sig(seconds, 2), pair.channel);
-    let next = if whose.is_empty() {
+    let next = if whose.is_empty() && pair.channel == Channel::R {
+        // Two measurements of one motion: neither is the cause of the other.
+        let other = sig(-seconds, 2);
+        format!(
+            "{delay} takes it back, if its clock is wrong, and `delay = {other}` for `psi`, if that of the heading is"
+        )
+    } else if whose.is_empty() {
         format!("{delay} takes it back, if its clock is wrong")
     } else {
         format!("{delay} takes it back; `delay = {{ \"SESSION\" = ... }}` does so in one session")

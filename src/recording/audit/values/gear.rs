@@ -1,14 +1,12 @@
-//! A rudder or a propeller that leaps in one run faster than its gear moves it in any other: its values were repeated, or lost, before.
-//! Gear whose limit the other runs do not show is not judged; orders that leap in most runs are in `orders`.
+//! A rudder that leaps in one run faster than its gear moves it in any other: its values were repeated, or lost, before. An engine has no gear:
+//! its rate follows an order the faster, the larger the change. Gear whose limit the other runs do not show is not judged; orders that leap in
+//! most runs are in `orders`.
 
 use crate::numerals::sig;
 use crate::recording::audit::issue::{Issue, Severity, Shared};
 use crate::recording::audit::limits::{GEAR_BEYOND, GEAR_REACHED, GEAR_RUNS, GEAR_SHARE, GEAR_STEP};
 use crate::recording::{Channel, Recording};
 use serde::{Deserialize, Serialize};
-
-/// What moves the ship.
-pub const ACTUATORS: [Channel; 2] = [Channel::Delta, Channel::N];
 
 /// The fastest change of a channel from one row to the next.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -52,9 +50,9 @@ impl Fastest {
     }
 }
 
-/// The runs in which a channel leaps beyond the limit that it reaches in the others.
-pub fn leaps(channel: Channel, runs: &[(&str, Option<&Fastest>)]) -> Vec<Shared> {
-    // The noise of a channel that rests is no gear.
+/// The runs in which the rudder leaps beyond the limit that it reaches in the others.
+pub fn leaps(runs: &[(&str, Option<&Fastest>)]) -> Vec<Shared> {
+    // The noise of a rudder that rests is no gear.
     let largest = runs.iter().filter_map(|(_, f)| Some((*f)?.largest)).fold(0.0, f64::max);
     let one = |(run, fastest): &(&str, Option<&Fastest>)| {
         let fastest = (*fastest).filter(|f| f.change.abs() > GEAR_SHARE * largest)?;
@@ -63,12 +61,12 @@ pub fn leaps(channel: Channel, runs: &[(&str, Option<&Fastest>)]) -> Vec<Shared>
         let limit = others.iter().copied().fold(0.0, f64::max);
         let reached = others.iter().filter(|rate| **rate >= GEAR_REACHED * limit).count();
         let beyond = reached >= GEAR_RUNS && fastest.rate > GEAR_BEYOND * limit;
-        beyond.then(|| Shared { runs: vec![(*run).to_owned()], issue: doubt(channel, fastest, limit, reached) })
+        beyond.then(|| Shared { runs: vec![(*run).to_owned()], issue: doubt(fastest, limit, reached) })
     };
     runs.iter().filter_map(one).collect()
 }
 
-fn doubt(channel: Channel, fastest: &Fastest, limit: f64, reached: usize) -> Issue {
+fn doubt(fastest: &Fastest, limit: f64, reached: usize) -> Issue {
     let text = format!(
         "leaps by {} {} in {} s (lines {} to {}), {} times as fast as it moves in any other run; {reached} of them reach that limit",
         sig(fastest.change, 3),
@@ -80,7 +78,7 @@ fn doubt(channel: Channel, fastest: &Fastest, limit: f64, reached: usize) -> Iss
     );
     let next = "look at the rows before it: where values were repeated or lost, leave their fields blank, so that they count as a dropout, \
                 or use the run from there with `from`";
-    Issue::new(Severity::Warning, "leap", text, next).of(channel).at(fastest.lines)
+    Issue::new(Severity::Warning, "leap", text, next).of(Channel::Delta).at(fastest.lines)
 }
 
 #[cfg(test)]
@@ -116,7 +114,7 @@ mod tests {
     }
 
     fn of_rudder(runs: &[(&str, Option<Fastest>)]) -> Vec<Shared> {
-        leaps(Channel::Delta, &runs.iter().map(|(run, fastest)| (*run, fastest.as_ref())).collect::<Vec<_>>())
+        leaps(&runs.iter().map(|(run, fastest)| (*run, fastest.as_ref())).collect::<Vec<_>>())
     }
 
     #[test]

@@ -2,7 +2,6 @@
 //! Coarse channels repeat; stretches that contradict other channels are in `frozen`. Rudder and propeller often stay at one value, and are
 //! tested only where they never do so in the rest of the run, and leap from the value at its end.
 
-use super::gear::ACTUATORS;
 use crate::recording::audit::issue::{Issue, Severity, Shared};
 use crate::recording::audit::limits::{
     HELD_BESIDE, HELD_CHANCE, HELD_CHANGES, HELD_DIGITS, HELD_LEAP, HELD_REST, HELD_ROWS, HELD_ROWS_MOVING, HELD_SAME,
@@ -13,6 +12,9 @@ use crate::recording::{Channel, Recording, STATE_CHANNELS};
 use crate::statistics::median;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
+
+/// What moves the ship.
+const ACTUATORS: [Channel; 2] = [Channel::Delta, Channel::N];
 
 /// What a channel repeats in a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
