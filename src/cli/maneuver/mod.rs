@@ -327,9 +327,12 @@ impl Prepared {
         }
         match self.draws() {
             Some(d) => {
-                let what = if self.known == Known::ByFit { "the covariance in" } else { "the priors of" };
+                let (what, without) = match self.known {
+                    Known::ByFit => ("the covariance in", "; what the model's form leaves out is not in them"),
+                    Known::Before => ("the priors of", ""),
+                };
                 notes.push(format!(
-                    "95 % intervals in brackets: {} draws of {what} {} ({}), seed {}.",
+                    "95 % intervals in brackets: {} draws of {what} {} ({}), seed {}{without}.",
                     d.count,
                     self.model_path.display(),
                     d.covariance,

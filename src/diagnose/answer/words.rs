@@ -190,7 +190,7 @@ fn but_for(said: &Said) -> String {
         let own = || said.windows.iter().filter(|w| w.run == *name && w.p < BEYOND_DOUBT);
         let from = own().map(|w| w.start).fold(f64::INFINITY, f64::min);
         let to = own().map(|w| w.end).fold(f64::NEG_INFINITY, f64::max);
-        format!("`{name}` (between {} and {} s)", sig(from, 4), sig(to, 4))
+        format!("`{name}` (between {} and {} s)", sig(from, 3), sig(to, 3))
     };
     let named = names.iter().map(when).collect::<Vec<_>>().join(" and ");
     let (verb, log, its) =

@@ -107,7 +107,8 @@ fn a_zigzag_of_known_heading_gives_its_overshoots_and_period() {
     assert!(found.iter().zip(&executes).all(|(f, e)| f.abs_diff(*e) <= 1), "{found:?} {executes:?}");
     let m = zigzag(&track, &executes, heading);
     for o in &m.overshoots[..4] {
-        assert!((o.to_degrees() - 4.0).abs() < 1e-3, "{o}");
+        // A parabola is not quite the top of a sine.
+        assert!((o.to_degrees() - 4.0).abs() < 2e-3, "{o}");
     }
     assert!((m.period.unwrap() - 200.0).abs() < 0.2);
     assert!((m.reach.unwrap() - 100.0).abs() < 0.1);
