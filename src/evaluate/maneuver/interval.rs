@@ -19,8 +19,7 @@ const TRIES: usize = 3;
 const REACHED: f64 = 0.95;
 /// Share of a drawn deviation that is sailed, to either side of the estimate. A covariance is the inverse of the curvature of the cost at
 /// the estimate: it is known for small steps alone, and whole ones leave the ships that the recordings allow (advance of 3.20 L, all
-/// draws to one side of it: 3.19 to 3.49). A quarter is small, and the step of integration, by which an execute of a zigzag comes late,
-/// adds 0.2 deg to an overshoot.
+/// draws to one side of it: 3.19 to 3.49). A quarter is small, and large beside the rounding of a simulation.
 const STEP: f64 = 0.25;
 
 /// What deviations are drawn from.

@@ -16,6 +16,15 @@ pub(super) struct Orders {
     pub delta: f64,
     /// Propeller rate \[rps\].
     pub n: f64,
+    /// Share of a step by which they were due before the sample at which they are given.
+    pub late: f64,
+}
+
+impl Orders {
+    /// Orders that are due at the sample at which they are given.
+    pub fn at_once(delta: f64, n: f64) -> Self {
+        Self { delta, n, late: 0.0 }
+    }
 }
 
 /// Simulates from the approach (x = y = psi = 0, straight ahead) under the orders of `helm`, which receives the track so
@@ -46,7 +55,7 @@ pub(super) fn sail_for(
     let limit = absurd_speed(model);
     let dynamics = Dynamics::new(model, theta.to_vec());
 
-    let mut orders = Orders { delta: 0.0, n: approach.n };
+    let mut orders = Orders::at_once(0.0, approach.n);
     let mut actuators: Vec<Inputs<f64>> =
         (0..=steps).map(|k| model.ship.inputs_ordered(k as f64 * dt, approach.n, 0.0)).collect();
     let mut series = driven(&dynamics, integration, dt, &actuators).into_owned();
@@ -61,11 +70,13 @@ pub(super) fn sail_for(
         let Some(new) = helm(&track) else {
             return (track, Ended::Complete);
         };
-        if new != orders {
+        if (new.delta, new.n) != (orders.delta, orders.n) {
             orders = new;
             for i in k + 1..=steps {
-                let delta = follow(actuators[i - 1].delta, orders.delta, approach.rudder_rate * dt);
-                let n = follow(actuators[i - 1].n, orders.n, approach.engine_rate * dt);
+                // What was due before this sample has the time since then beside the first step.
+                let time = if i == k + 1 { (1.0 + orders.late) * dt } else { dt };
+                let delta = follow(actuators[i - 1].delta, orders.delta, approach.rudder_rate * time);
+                let n = follow(actuators[i - 1].n, orders.n, approach.engine_rate * time);
                 actuators[i] = model.ship.inputs_ordered(i as f64 * dt, n, delta);
             }
             series = driven(&dynamics, integration, dt, &actuators).into_owned();

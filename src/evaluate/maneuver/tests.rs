@@ -116,6 +116,23 @@ fn a_zigzag_of_known_heading_gives_its_overshoots_and_period() {
 }
 
 #[test]
+fn overshoots_do_not_depend_on_the_step_within_which_the_rudder_is_put_over() {
+    let model = model(Form::Regular);
+    let theta = model.values();
+    let overshoots = |share: f64| {
+        let settings = ManeuverSettings::default();
+        let step = share * settings.approach(&model, &theta).unwrap().step;
+        let approach = ManeuverSettings { step: Some(step), ..settings }.approach(&model, &theta).unwrap();
+        zigzag_trial(&model, &theta, &approach, Side::Starboard, [0.35, 0.35]).measures.overshoots
+    };
+    let (coarse, fine) = (overshoots(1.0), overshoots(0.1));
+    assert!(coarse.len() > 2 && coarse.len() == fine.len(), "{coarse:?}");
+    for (a, b) in coarse.iter().zip(&fine) {
+        assert!((a - b).abs().to_degrees() < 0.03, "{coarse:?} {fine:?}");
+    }
+}
+
+#[test]
 fn a_noisy_zigzag_of_one_row_a_second_gives_its_overshoots_whatever_rows_the_rudder_is_put_over_at() {
     use rand::SeedableRng;
     use rand_distr::{Distribution, Normal};

@@ -88,7 +88,7 @@ pub fn pull_out_trial(model: &Model, theta: &[f64], approach: &Approach, side: S
             _ => {}
         }
         let delta = if release.is_none() { side.sign() * angle } else { 0.0 };
-        Some(Orders { delta, n: approach.n })
+        Some(Orders::at_once(delta, approach.n))
     });
     let rudder = side.sign() * angle;
     let measures = match release {

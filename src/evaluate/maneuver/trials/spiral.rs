@@ -60,7 +60,7 @@ pub fn spiral_trial(model: &Model, theta: &[f64], approach: &Approach, largest: 
             points.push([angles[points.len()], track.states[now][5]]);
             since = now;
         }
-        angles.get(points.len()).map(|delta| Orders { delta: *delta, n: approach.n })
+        angles.get(points.len()).map(|delta| Orders::at_once(*delta, approach.n))
     });
     let mut measures = spiral(&points);
     (measures.rudder, measures.approach_speed) = (largest, approach.speed);

@@ -34,7 +34,7 @@ pub fn stopping(track: &Track, order: usize) -> Stopping {
 
 /// Simulates a crash stop: engine to the approach's astern rate, rudder amidships, until the ship makes no more way ahead.
 pub fn stopping_trial(model: &Model, theta: &[f64], approach: &Approach) -> Trial<Stopping> {
-    let orders = Orders { delta: 0.0, n: approach.astern };
+    let orders = Orders::at_once(0.0, approach.astern);
     let (track, ended) = sail(model, theta, approach, |track| {
         // `first_above` needs the sample after the last one with way ahead.
         track.states.last().is_none_or(|s| s[3] > 0.0).then_some(orders)

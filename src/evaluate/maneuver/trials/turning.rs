@@ -79,7 +79,7 @@ pub fn turning_execute(track: &Track) -> Option<usize> {
 
 /// Simulates a turning circle through 720 deg with the rudder at `angle` \[rad\] to one side.
 pub fn turning_trial(model: &Model, theta: &[f64], approach: &Approach, side: Side, angle: f64) -> Trial<Turning> {
-    let orders = Orders { delta: side.sign() * angle, n: approach.n };
+    let orders = Orders::at_once(side.sign() * angle, approach.n);
     let (track, ended) = sail(model, theta, approach, |track| {
         let turned = track.states.last().map_or(0.0, |s| side.sign() * s[2]);
         (turned < 4.0 * PI).then_some(orders)

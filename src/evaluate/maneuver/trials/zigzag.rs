@@ -16,6 +16,11 @@ const FEWEST: usize = 5;
 
 /// Measures a zigzag of `heading` \[rad\] on a track whose rudder was put over at the samples `executes`.
 pub fn zigzag(track: &Track, executes: &[usize], heading: f64) -> Zigzag {
+    about(track, executes, heading, steered(track, executes))
+}
+
+/// As [`zigzag`], to either side of a course \[rad\] that is known.
+fn about(track: &Track, executes: &[usize], heading: f64, steered: f64) -> Zigzag {
     let Some((&first, later)) = executes.split_first() else {
         return Zigzag::default();
     };
@@ -27,7 +32,6 @@ pub fn zigzag(track: &Track, executes: &[usize], heading: f64) -> Zigzag {
 
     let turned = |s: &[f64; 6]| side * (s[2] - course);
     let answered = track.first_above(first, heading, turned);
-    let steered = steered(track, executes);
     // An overshoot is complete once the ship has turned back: at the next execute, or past a peak within the track.
     let overshoots = later.iter().enumerate().filter_map(|(i, &from)| {
         let towards = if i % 2 == 0 { side } else { -side };
@@ -118,13 +122,17 @@ pub fn zigzag_trial(model: &Model, theta: &[f64], approach: &Approach, side: Sid
     let mut executes = vec![0];
     let mut to = side.sign();
     let (track, ended) = sail(model, theta, approach, |track| {
-        if track.states.last().is_some_and(|s| to * s[2] >= heading) {
-            executes.push(track.len() - 1);
+        let (mut late, k) = (0.0, track.len() - 1);
+        let beyond = |k: usize| to * track.states[k][2] - heading;
+        if beyond(k) >= 0.0 {
+            // The heading passed the angle of the zigzag within the last step.
+            late = if k > 0 { (beyond(k) / (beyond(k) - beyond(k - 1))).clamp(0.0, 1.0) } else { 0.0 };
+            executes.push(k);
             to = -to;
         }
-        (executes.len() < EXECUTES).then_some(Orders { delta: to * rudder, n: approach.n })
+        (executes.len() < EXECUTES).then_some(Orders { delta: to * rudder, n: approach.n, late })
     });
-    let mut measures = zigzag(&track, &executes, heading);
+    let mut measures = about(&track, &executes, heading, 0.0);
     measures.rudder = side.sign() * rudder;
     Trial {
         name: format!("zigzag {:.0}/{:.0}, {} first", rudder.to_degrees(), heading.to_degrees(), side.word()),
