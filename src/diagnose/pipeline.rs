@@ -156,6 +156,16 @@ fn file(
     (whose, improved, uncertainty)
 }
 
+/// What is missing and not in the catalogue.
+fn missing(answer: &Answer) -> Option<Missing<'_>> {
+    match (answer.unlisted(), &answer.kept.place, &answer.law) {
+        (Some(Unlisted::Place), Some(place), _) => Some(Missing::Place(place)),
+        (Some(Unlisted::Law), _, law) => Some(Missing::Law(law.as_ref())),
+        (_, _, Some(law)) => Some(Missing::Law(Some(law))),
+        _ => None,
+    }
+}
+
 /// Everything that the diagnosis says of one analysis.
 fn report(
     question: &Question,
@@ -170,12 +180,7 @@ fn report(
     let last = answer.kept.left_by_named().filter(|_| answer.base.holds).map(|l| &l.screen);
     let beside_law = answer.confirmed_law().map(|law| screen(&law.estimate, fit.integration, &fit.runs, &[]));
     let left = last.or(beside_law.as_ref());
-    let missing = match (answer.unlisted(), &answer.kept.place, &answer.law) {
-        (Some(Unlisted::Place), Some(place), _) => Some(Missing::Place(place)),
-        (Some(Unlisted::Law), _, law) => Some(Missing::Law(law.as_ref())),
-        (_, _, Some(law)) => Some(Missing::Law(Some(law))),
-        _ => None,
-    };
+    let missing = missing(&answer);
     // What predicts unseen runs worse than the base model is no improvement, however significant its parts are.
     let worse = proof.as_ref().is_some_and(HeldOut::is_worse);
     let adds = answer.improves() && !worse;

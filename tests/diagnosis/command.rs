@@ -110,6 +110,7 @@ fn no_key_is_explained_that_the_document_cannot_have() {
         "findings[].region",
         "ranking[].sessions",
         "withdrawn[]",
+        "differing[]",
         "error_rates",
     ];
     for (key, _) in keys() {

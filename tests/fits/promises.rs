@@ -248,15 +248,6 @@ fn a_model_that_is_the_ship_is_not_doubted() {
 }
 
 #[test]
-fn residuals_that_start_from_a_measured_state_and_are_alike_are_no_doubt() {
-    // Each window begins off its true state by the noise of the sensors, and all its residuals carry that.
-    let off = |w: usize, _: usize| std::array::from_fn(|c| 3.0 * (1.7 * w as f64 + c as f64).sin() * NOISE[c]);
-    let fit = quiet(&model(), &recordings(&truth(), 10, 1.0, off), &settings());
-    assert!(fit.residual_statistics.likeness.unwrap() > 5.0, "{:?}", fit.residual_statistics);
-    assert!(fit.headline.starts_with("Converged: "), "{}", fit.headline);
-}
-
-#[test]
 fn an_effect_that_the_model_lacks_is_in_the_first_line() {
     // A sensor that wanders by ten times the noise over some 30 samples.
     let wander = |w: usize, k: usize| {
@@ -265,6 +256,8 @@ fn an_effect_that_the_model_lacks_is_in_the_first_line() {
     };
     let runs = recordings(&truth(), 10, 1.0, wander);
     let fit = quiet(&model(), &runs, &settings());
+    // That residuals are alike is no doubt: the intervals count them.
+    assert!(fit.residual_statistics.likeness.unwrap() > 2.0, "{:?}", fit.residual_statistics);
     let kinds: Vec<DoubtKind> = fit.doubts.iter().map(|d| d.kind).collect();
     assert_eq!(kinds, [DoubtKind::ModelError], "{}", fit.headline);
     let report = fit.report();

@@ -528,7 +528,7 @@ mod tests {
         };
         for verdict in [Verdict::NothingMissing, Verdict::Random] {
             let said = headline(verdict, &said);
-            assert!(said.contains("`turn 6` (between 63 and 323 s) differs") && said.contains("other 23"), "{said}");
+            assert!(said.contains("`turn 6` (between 63.0 and 323 s) differs") && said.contains("other 23"), "{said}");
         }
     }
 
