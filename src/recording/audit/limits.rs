@@ -230,8 +230,6 @@ pub const POOLED_SIZE: f64 = 5.0;
 /// times what they usually leave. Of 3501 sound runs (96 concealed cases, seeds 8601 to 8624, and the three studies) none that shows nothing
 /// of its rudder by itself was explained better without it, with evidence of 15 or more, and left 1.5 times as much as usual.
 pub const POOLED_UNUSUAL: f64 = 2.5;
-/// and beyond so many scatters of its logarithm over the runs: one in 16 000 of a normal distribution.
-pub const POOLED_SCATTERS: f64 = 4.0;
 /// A rudder or a propeller that keeps one value is compared with the other runs where so many windows are in the stretch and outside it,
 pub const STUCK_WINDOWS: usize = 10;
 /// and is stuck where it explains nothing ([`EXPLAINS`]) and the others' coefficients leave this many times as much, squared and by window,

@@ -5,8 +5,8 @@ use super::response::Curve;
 use super::sources::Sources;
 use super::sums::Sums;
 use crate::recording::audit::limits::{
-    EXPLAINS, OWN_SIDE, POOLED_AGREED, POOLED_EVIDENCE, POOLED_LEAVES, POOLED_RUNS, POOLED_SCATTERS, POOLED_SIZE,
-    POOLED_STILL, POOLED_UNUSUAL, SCALE_EVIDENCE,
+    EXPLAINS, OWN_SIDE, POOLED_AGREED, POOLED_EVIDENCE, POOLED_LEAVES, POOLED_RUNS, POOLED_SIZE, POOLED_STILL,
+    POOLED_UNUSUAL, SCALE_EVIDENCE,
 };
 use crate::statistics::median;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -114,24 +114,10 @@ impl<'c> Pool<'c> {
         Some(usual * curve.rows / curve.samples * trace)
     }
 
-    /// What the coefficients of the others leave of each run, squared and by window, where they leave anything.
-    fn left(&self) -> Vec<f64> {
-        let square = |c: &Curve| Some(c.at_zero().left(&self.others(c)?) / c.rows);
-        self.runs().filter_map(square).filter(|left| *left > 0.0).collect()
-    }
-
-    /// What they usually leave; `None` where they leave nothing.
+    /// What the coefficients of the others usually leave of a run, squared and by window; `None` where they leave nothing.
     pub(in crate::recording::audit) fn usual(&self) -> Option<f64> {
-        median(self.left())
-    }
-
-    /// How many times that is unusual: a regression of few columns describes some manoeuvres worse than others, so that what it leaves scatters
-    /// from run to run, by s in its logarithm (1.4826 times the median deviation from the median); `exp(4 s)`, and [`POOLED_UNUSUAL`] at least.
-    fn unusual(&self) -> f64 {
-        let logarithms: Vec<f64> = self.left().iter().map(|left| left.ln()).collect();
-        let middle = median(logarithms.iter().copied()).unwrap_or(0.0);
-        let scatter = 1.4826 * median(logarithms.iter().map(|l| (l - middle).abs())).unwrap_or(0.0);
-        POOLED_UNUSUAL.max((POOLED_SCATTERS * scatter).exp())
+        let square = |c: &Curve| Some(c.at_zero().left(&self.others(c)?) / c.rows);
+        median(self.runs().filter_map(square)).filter(|u| *u > 0.0)
     }
 }
 
@@ -147,15 +133,19 @@ pub(in crate::recording::audit) fn odd(
     sources: &Sources,
     worth: impl Fn(f64) -> bool,
 ) -> Vec<Option<Odd>> {
-    let (usual, unusual) = (pool.usual(), pool.unusual());
+    let usual = pool.usual();
     let alike = |run: usize| curves[run].filter(|c| pool.is_alike(c));
     let judged = |run: usize| {
         let curve = alike(run)?;
         let others = pool.others(curve)?;
-        let expected = usual.and_then(|usual| Some(usual * curve.rows + pool.unsure(curve, usual)?));
-        let most = expected.map(|expected| unusual * expected);
-        let unanswered = || is_unanswered(curve, &others, expected?, most?).then_some(Odd::Unanswered);
-        let found = judged(curve, &others, most.unwrap_or(0.0), &worth).or_else(unanswered)?;
+        let usually = usual.map(|usual| usual * curve.rows);
+        let unsure = usual.and_then(|usual| pool.unsure(curve, usual));
+        let expected = usually.zip(unsure).map(|(usually, unsure)| usually + unsure);
+        // Where the error of the coefficients would leave more than the motion itself does, as of a propeller that rests in the other runs but
+        // for the noise of its record, they do not say what the motion must answer.
+        let known = usually.zip(unsure).is_some_and(|(usually, unsure)| unsure <= usually);
+        let unanswered = || (known && is_unanswered(curve, &others, expected?)).then_some(Odd::Unanswered);
+        let found = judged(curve, &others, expected.unwrap_or(0.0), &worth).or_else(unanswered)?;
         sources.agree(run, |other| losses(alike(other)?, &others, found)).then_some(found)
     };
     (0..curves.len()).map(judged).collect()
@@ -196,23 +186,23 @@ pub(in crate::recording::audit) fn shares_at_best(curves: &[Option<&Curve>], poo
 }
 
 /// Whether a run by itself shows no effect of the channel, and is explained better without it than with its effect in the other runs,
-/// which leaves more than the `most` that a sound run leaves.
-fn is_unanswered(curve: &Curve, others: &[f64], expected: f64, most: f64) -> bool {
+/// which leaves more than is expected of a sound run.
+fn is_unanswered(curve: &Curve, others: &[f64], expected: f64) -> bool {
     let sums = curve.at_zero();
     let (as_it_is, nothing) = (sums.left(others), sums.left_without(curve.own, others));
     let evidence = curve.samples * (as_it_is - nothing) / nothing.max(expected);
-    curve.side().abs() < POOLED_EVIDENCE && as_it_is > most && evidence > SCALE_EVIDENCE
+    curve.side().abs() < POOLED_EVIDENCE && as_it_is > POOLED_UNUSUAL * expected && evidence > SCALE_EVIDENCE
 }
 
 /// What is odd in a run, given the coefficients of the others: the explanation with the most evidence, over the windows that it shares with
-/// the run as it is. To the other side acts only what leaves more than the `most` that a sound run leaves, with the error of the others'
-/// coefficients.
-fn judged(curve: &Curve, others: &[f64], most: f64, worth: &impl Fn(f64) -> bool) -> Option<Odd> {
+/// the run as it is. To the other side acts only what leaves more than is `expected` of a sound run: what is usually left of one, and the
+/// error of the others' coefficients.
+fn judged(curve: &Curve, others: &[f64], expected: f64, worth: &impl Fn(f64) -> bool) -> Option<Odd> {
     let turned = to_the_other_side(curve, others);
     let zero = curve.zero();
     // A run that does not show by itself that the channel acts to the other side is not judged by the others, and neither is one that is as
     // usual.
-    let of_side = curve.side() < -OWN_SIDE && curve.at_zero().left(others) > most;
+    let of_side = curve.side() < -OWN_SIDE && curve.at_zero().left(others) > POOLED_UNUSUAL * expected;
     let mut best: Option<(f64, Odd)> = None;
     for (place, sums) in curve.sums.iter().enumerate() {
         let seconds = curve.seconds(place);
@@ -318,6 +308,20 @@ mod tests {
         for (moves, shows) in [(0.1, false), (4.0, true)] {
             assert_eq!(found(moves, shows), [None; 9]);
         }
+    }
+
+    #[test]
+    fn what_the_others_show_by_jitter_alone_is_no_answer_that_a_run_must_give() {
+        // In the others the channel moves by a hundredth of what it moves by in the last.
+        let mut curves = vec![run(1.0); 9];
+        for still in &mut curves[..8] {
+            still.sums[0] = Sums { columns: vec![1e-4], response: vec![8e-5], squares: 1.0 };
+        }
+        curves[8].sums[0] = Sums { columns: vec![4.0], response: vec![0.0], squares: 0.4 };
+        curves[8].without = curves[8].left[0];
+        let all: Vec<Option<&Curve>> = curves.iter().map(Some).collect();
+        let pool = Pool::new(&all[..8], |_| 1.0, 5.0).unwrap();
+        assert_eq!(odd(&all, &pool, &Sources::of(0..9), |_| false), [None; 9]);
     }
 
     #[test]
