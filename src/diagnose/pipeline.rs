@@ -10,6 +10,7 @@ use super::answer::summary::{absorbed, adequacy, budget, confusable, detectable,
 use super::answer::words::{Missing, Said, differing, headline, next_trial};
 use super::error::DiagnoseError;
 use super::evidence::generic::corrected;
+use super::evidence::push::Window;
 use super::evidence::set_aside::Divided;
 use super::law::Law;
 use super::law::sides::sides;
@@ -156,6 +157,13 @@ fn file(
     (whose, improved, uncertainty)
 }
 
+/// The recordings that differ from all others, where nothing is named, and the number of all.
+fn apart<'a>(verdict: Verdict, windows: &'a [Window], runs: &[Run]) -> (Vec<&'a str>, usize) {
+    let recordings = runs.iter().map(|run| &run.recording).collect::<BTreeSet<_>>().len();
+    let quiet = matches!(verdict, Verdict::NothingMissing | Verdict::Random);
+    (if quiet { differing(windows, recordings) } else { Vec::new() }, recordings)
+}
+
 /// What is missing and not in the catalogue.
 fn missing(answer: &Answer) -> Option<Missing<'_>> {
     match (answer.unlisted(), &answer.kept.place, &answer.law) {
@@ -189,9 +197,7 @@ fn report(
     let traces = traces(&fit.runs, fit.integration, base, last.map(|_| found));
     let verdict = answer.verdict;
     let hull_budget = budget(found);
-    let recordings = fit.runs.iter().map(|run| &run.recording).collect::<BTreeSet<_>>().len();
-    let quiet = matches!(verdict, Verdict::NothingMissing | Verdict::Random);
-    let differing = if quiet { differing(&tests.location.windows, recordings) } else { Vec::new() };
+    let (differing, recordings) = apart(verdict, &tests.location.windows, &fit.runs);
     let said = Said {
         hull: &hull_budget,
         windows: &tests.location.windows,

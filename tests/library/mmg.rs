@@ -95,7 +95,8 @@ fn accelerations_of_kvlcc2_are_those_of_the_printed_equations() {
 #[test]
 fn trials_of_kvlcc2_are_those_of_an_independent_simulation_with_the_same_primes() {
     // By RK4 in steps of 0.5 s of the full-scale ship: advance, transfer, tactical and steady diameter, then advance and tactical diameter to
-    // port, then overshoots to the tenth of a degree. The step shifts executes by up to 0.5 s, which is 0.1 deg.
+    // port, then overshoots to the tenth of a degree. An execute of
+    // it is up to a step late, which adds up to 0.2 deg.
     let (model, time) = (kvlcc2(), (7.0_f64 / 320.0).sqrt());
     let theta = model.values();
     let settings = ManeuverSettings {
@@ -129,7 +130,7 @@ fn trials_of_kvlcc2_are_those_of_an_independent_simulation_with_the_same_primes(
     ] {
         let m = zigzag_trial(&model, &theta, &approach, side, [degrees.to_radians(); 2]).measures;
         for (found, expected) in m.overshoots.iter().map(|o| o.to_degrees()).zip(expected) {
-            assert!((found - expected).abs() < 0.15 + 5e-3 * expected, "{side:?} {degrees}: {found} {expected}");
+            assert!((found - expected).abs() < 0.25 + 5e-3 * expected, "{side:?} {degrees}: {found} {expected}");
         }
     }
 }

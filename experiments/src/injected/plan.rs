@@ -1,7 +1,7 @@
 //! The plan of the campaign on real recordings: which cases are made, by set and kind, each with a key and a seed of its own.
 //! It makes no case.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
@@ -417,7 +417,14 @@ pub const SLICE: usize = 12;
 
 /// The cases of every push: short ones of every kind, with a partner where there is room.
 pub fn ci_slice(plan: &[Planned], campaign: u64) -> Vec<Planned> {
-    let short: Vec<Planned> = plan.iter().filter(|c| is_short(&c.configuration)).cloned().collect();
+    // Six recordings, or as few as there are of a kind.
+    let least = |kind: Kind| {
+        let of = plan.iter().filter(|c| c.kind == kind && is_short(&c.configuration));
+        of.map(|c| c.configuration.runs.len()).min().unwrap_or(0).max(6)
+    };
+    let most: BTreeMap<Kind, usize> = KINDS.into_iter().map(|kind| (kind, least(kind))).collect();
+    let few = |c: &&Planned| most.get(&c.kind).is_some_and(|most| c.configuration.runs.len() <= *most);
+    let short: Vec<Planned> = plan.iter().filter(|c| is_short(&c.configuration)).filter(few).cloned().collect();
     let mut chosen = sample(&short, SLICE - 1, campaign);
     let mut keys: BTreeSet<String> = chosen.iter().map(|c| c.key.clone()).collect();
     let partners: Vec<String> = chosen.iter().filter_map(|c| c.partner.clone()).collect();
@@ -437,7 +444,7 @@ pub fn ci_slice(plan: &[Planned], campaign: u64) -> Vec<Planned> {
 /// Whether a diagnosis takes little time.
 fn is_short(c: &Configuration) -> bool {
     let steps = c.set.facts().steps;
-    c.runs.len() <= 6 && !c.freed && c.step >= steps[2]
+    !c.freed && c.step >= steps[2]
 }
 
 #[cfg(test)]
