@@ -349,6 +349,53 @@ fn a_heading_in_radians_that_counts_on_through_full_turns_keeps_the_unit_that_th
     assert!(off(&imported) < 0.6, "{} {}", off(&imported), notes(&imported));
 }
 
+/// The taken column of a quantity: its unit and the evidence.
+fn evidence(imported: &Imported, quantity: &str) -> String {
+    let found = imported.taken.iter().find(|t| t.quantity == quantity);
+    found.map_or_else(String::new, |t| format!("{}: {}", t.unit, t.evidence))
+}
+
+#[test]
+fn angles_in_hundredths_of_a_degree_are_known_by_their_name_or_their_size() {
+    let autopilot = |names: &str, turned: &dyn Fn(&Row) -> Row| {
+        let mut text = NAMES.replace("heading,rudder", names) + "\n";
+        sailed(0.0).iter().for_each(|row| text += &format!("{}\n", fields(&turned(row))));
+        text
+    };
+    let hundredths = |row: &Row| Row { heading: 100.0 * row.heading, ..*row };
+    let both = |row: &Row| Row { rudder: 100.0 * row.rudder, ..hundredths(row) };
+    for (names, rows) in [
+        ("hdg,rudder_deg", &hundredths as &dyn Fn(&Row) -> Row),
+        ("heading [deg],rudder_deg", &hundredths),
+        ("hdg_cdeg,rudder_cdeg", &both),
+        ("hdg [0.01 deg],rudder centidegrees", &both),
+    ] {
+        let text = autopilot(names, rows);
+        // Without the positions the size and the jumps of the heading show it.
+        let still = text.replace("lat,lon,sog_kn,cog", "a,b,sog_kn,cog_deg");
+        for text in [text, still] {
+            let imported = read(&text);
+            let most = channel(&imported, 0, Channel::Delta).iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+            assert!(off(&imported) < 0.1 && (most / DEGREE - 14.0).abs() < 0.1, "{names}: {} {most}", off(&imported));
+            assert!(names.starts_with("hdg_") || evidence(&imported, "psi").contains("deg"), "{names}");
+        }
+    }
+    let imported = read(&autopilot("hdg,rudder_deg", &hundredths));
+    contains_all(&evidence(&imported, "psi"), &["cdeg: ", "values up to 34500", "hundredths of a degree"]);
+    // A rudder by 1400 may be in milliradians as well, and one by 3500 not.
+    let said = written(&autopilot("hdg,rudder", &both), &ImportSettings::default()).unwrap_err();
+    contains_all(&said, &["the unit of column `rudder`", "--unit delta=deg, cdeg or mrad"]);
+    let far = read(&autopilot("hdg,rudder", &|row| Row { rudder: 250.0 * row.rudder, ..hundredths(row) }));
+    contains_all(&evidence(&far, "delta"), &["cdeg: angles up to 3500"]);
+    // A heading in degrees that counts turns stays one; a size that no unit explains is asked for.
+    let turns = |row: &Row| Row { heading: row.heading + 3600.0, ..*row };
+    assert!(off(&read(&autopilot("heading,rudder", &turns))) < 0.1);
+    let odd = autopilot("heading,rudder", &|row| Row { heading: 1e4 * row.heading, ..*row });
+    let odd = odd.replace("lat,lon,sog_kn,cog", "a,b,sog_kn,cog_deg");
+    let said = written(&odd, &ImportSettings::default()).unwrap_err();
+    contains_all(&said, &["the unit of column `heading`", "--unit psi=deg, cdeg or mrad"]);
+}
+
 #[test]
 fn a_longitude_positive_to_the_west_mirrors_no_ship() {
     let mirrored = |axis: usize| {

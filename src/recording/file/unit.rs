@@ -96,6 +96,7 @@ pub const UNITS: &[Unit] = &[
         DEGREE,
     ),
     unit(Quantity::Angle, &["mrad", "milliradian", "milliradians"], 1e-3),
+    unit(Quantity::Angle, &["cdeg", "centideg", "centidegree", "centidegrees"], 0.01 * DEGREE),
     unit(Quantity::Angle, &["arcmin", "min", "minute", "minutes"], DEGREE / 60.0),
     unit(Quantity::Speed, &["m/s", "ms-1", "m s-1", "m/sec", "mps"], 1.0),
     unit(
@@ -124,6 +125,7 @@ pub const UNITS: &[Unit] = &[
     ),
     unit(Quantity::AngularRate, &["rad/min", "rad min-1"], 1.0 / 60.0),
     unit(Quantity::AngularRate, &["mrad/s", "mrad s-1", "mrad/sec"], 1e-3),
+    unit(Quantity::AngularRate, &["cdeg/s", "cdeg s-1", "cdeg/sec", "centideg/s", "centidegrees/s"], 0.01 * DEGREE),
     unit(
         Quantity::Rotation,
         &["rps", "1/s", "s-1", "s^-1", "Hz", "rev/s", "rev/sec", "r/s", "U/s", "tr/s", "giri/s"],
@@ -228,6 +230,8 @@ mod tests {
         close(Quantity::AngularRate.factor("Degrees/s"), std::f64::consts::PI / 180.0);
         close(Quantity::AngularRate.factor("mrad/s"), 1e-3);
         close(Quantity::Angle.factor("mrad"), 1e-3);
+        close(Quantity::Angle.factor("centidegrees"), 0.01 * DEGREE);
+        close(Quantity::AngularRate.factor("cdeg/s"), 0.01 * DEGREE);
         close(Quantity::Rotation.factor("rpm"), 1.0 / 60.0);
         close(Quantity::Rotation.factor("rad/s"), 1.0 / std::f64::consts::TAU);
         close(Quantity::Number.factor("%"), 0.01);

@@ -1,11 +1,12 @@
 //! How well a column agrees with what is known of the motion: a speed with the track, a direction with the course, a rate with the heading.
-//! It ranks the candidates for one quantity; units and signs are decided later, in `evidence`.
+//! It ranks the candidates for one quantity, and finds the unit of a direction; other units and signs are decided later, in `evidence`.
 
+use crate::numerals::sig;
 use crate::recording::import::signals::log::{Column, Meaning};
 use crate::recording::import::signals::motion::{COHERENT, Track, ratio, rudder_effect};
 use crate::recording::import::signals::signal::{Signal, size_below};
 use crate::recording::{Channel, Quantity};
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// What is known of the motion while columns are chosen.
 #[derive(Default)]
@@ -82,10 +83,113 @@ pub fn heading(columns: &[&Column], track: Option<&Track>) -> Signal {
     Signal::new(columns, heading_unit(columns, track), 0.0, true).0
 }
 
-/// SI value of one of a heading's: the unit in which it goes with the track, or by its size, or as stated.
+/// SI value of one of a heading's: a unit of its own that the file states, or that in which it goes with the track or has its size, or as
+/// stated.
 pub fn heading_unit(columns: &[&Column], track: Option<&Track>) -> f64 {
-    let top = columns.iter().map(|c| size_below(&c.v, 0.999)).fold(0.0, f64::max);
     let stated = columns.iter().find_map(|c| Quantity::Angle.factor(c.unit.as_deref()?));
-    let unit = Track::unit_of_direction(track, |factor| Signal::new(columns, factor, 0.0, true).0, top);
-    unit.map(|u| u.factor).or(stated).unwrap_or(1.0)
+    let own = stated.filter(|factor| *factor < 0.5 * DEGREE && top(columns) * factor < MOST_RADIANS);
+    own.or(compass_unit(columns, track).map(|shown| shown.factor)).or(stated).unwrap_or(1.0)
+}
+
+/// One degree \[rad\].
+const DEGREE: f64 = TAU / 360.0;
+/// Any heading or course above this is no radian, but for one that counts turns.
+pub const MOST_RADIANS: f64 = 7.0;
+/// A direction in degrees stays within so many turns, unless it counts them from the first.
+const FEW_TURNS: f64 = 2.0;
+/// Nor does one that counts them count more than so many.
+const MANY_TURNS: f64 = 20.0;
+/// Jumps by a whole turn that show a unit.
+const JUMPS: usize = 3;
+/// A jump by a whole turn is missed by at most this share of it.
+const OFF_TURN: f64 = 0.1;
+/// The units of a direction: the usual two, and those that need more numbers for a turn.
+const USUAL: [&str; 2] = ["deg", "rad"];
+const FINER: [&str; 2] = ["cdeg", "mrad"];
+
+/// The unit of a direction, and what shows it.
+pub struct Shown {
+    /// The unit.
+    pub unit: &'static str,
+    /// SI value of one.
+    pub factor: f64,
+    /// In words.
+    pub why: String,
+}
+
+/// The unit of a direction: the one in which it goes with the track, by a whole turn of which it jumps, or in which it has its size.
+pub fn compass_unit(columns: &[&Column], track: Option<&Track>) -> Option<Shown> {
+    let of = |units: &[&'static str]| -> Vec<(&'static str, f64)> {
+        units.iter().filter_map(|unit| Some((*unit, Quantity::Angle.factor(unit)?))).collect()
+    };
+    let (top, mut units, finer) = (top(columns), of(&USUAL), of(&FINER));
+    let by_size = by_size(columns, &finer);
+    if top * DEGREE > TAU * (1.0 + OFF_TURN) {
+        units.extend(&finer);
+    }
+    let factors: Vec<f64> = units.iter().map(|(_, factor)| *factor).collect();
+    let raw = |factor: f64| Signal::new(columns, factor, 0.0, true).0;
+    let of_track = track.and_then(|track| track.unit_of_direction(raw, &factors));
+    let by_track = units.iter().copied().find(|(_, factor)| Some(*factor) == of_track);
+    let by_jumps = units.iter().copied().find(|(_, factor)| jumps_by(columns, TAU / factor));
+    let (unit, factor) = by_track.or(by_jumps).or(by_size)?;
+    let values = format!("values up to {}", sig(largest(columns), 3));
+    let words = match unit {
+        "rad" => "radians",
+        "deg" => "degrees",
+        "cdeg" => "hundredths of a degree",
+        _ => "milliradians",
+    };
+    let why = match (by_track, by_size) {
+        (Some(_), by_size) if by_size.is_none_or(|(size, _)| size != unit) => {
+            format!("{values}; the track goes that way in {words}")
+        }
+        (None, None) => format!("{values}; jumps by a turn in {words}"),
+        _ if finer.iter().any(|(finer, _)| *finer == unit) => {
+            format!("{values}, which no direction has in degrees: {words}")
+        }
+        _ => values,
+    };
+    Some(Shown { unit, factor, why })
+}
+
+/// The unit that the size of a direction shows.
+fn by_size(columns: &[&Column], finer: &[(&'static str, f64)]) -> Option<(&'static str, f64)> {
+    let top = top(columns);
+    let turns = |factor: f64| top * factor / TAU;
+    if top <= MOST_RADIANS {
+        return None;
+    }
+    if turns(DEGREE) <= FEW_TURNS || counts_turns(columns, DEGREE) {
+        return Some(("deg", DEGREE));
+    }
+    let within = || finer.iter().filter(|(_, factor)| turns(*factor) <= 1.0 + 0.1 * OFF_TURN);
+    within().next().filter(|_| within().count() == 1).copied()
+}
+
+/// Whether a direction in that unit counts turns: it begins within one, never steps by half of one, and makes some at most.
+pub fn counts_turns(columns: &[&Column], factor: f64) -> bool {
+    let turn = TAU / factor;
+    let begins = columns.iter().filter_map(|c| c.v.first()).all(|v| v.abs() < 1.5 * turn);
+    let steps = columns.iter().flat_map(|c| c.v.windows(2)).all(|v| (v[1] - v[0]).abs() < 0.5 * turn);
+    begins && steps && top(columns) < MANY_TURNS * turn
+}
+
+/// Whether a direction jumps by about so much, and never farther, where it passes the end of its range.
+fn jumps_by(columns: &[&Column], turn: f64) -> bool {
+    let steps = || columns.iter().flat_map(|c| c.v.windows(2)).map(|v| (v[1] - v[0]).abs());
+    let whole = |step: &f64| (step / turn - 1.0).abs() < OFF_TURN;
+    largest(columns) <= turn * (1.0 + OFF_TURN)
+        && steps().filter(whole).count() >= JUMPS
+        && steps().all(|step| step <= turn)
+}
+
+/// The largest size of the values.
+pub fn largest(columns: &[&Column]) -> f64 {
+    columns.iter().flat_map(|c| &c.v).fold(0.0, |m: f64, v| m.max(v.abs()))
+}
+
+/// The same without a stray number.
+pub fn top(columns: &[&Column]) -> f64 {
+    columns.iter().map(|c| size_below(&c.v, 0.999)).fold(0.0, f64::max)
 }

@@ -1,13 +1,12 @@
 //! Units, signs and senses by comparing columns with one another: heading against the track and the yaw rate, speed against the
 //! track, rudder against the turn. What the data do not show is asked for, with the flag to pass.
 
+use super::agree::{MOST_RADIANS, compass_unit, counts_turns, largest, top};
 use super::names::is_magnetic;
 use super::scale::{advice, clock};
 use crate::numerals::sig;
 use crate::recording::import::signals::log::{Column, Meaning};
-use crate::recording::import::signals::motion::{
-    AGREE, COHERENT, DirectionUnit, MOST_RADIANS, Track, ratio, rudder_effect,
-};
+use crate::recording::import::signals::motion::{AGREE, COHERENT, Track, ratio, rudder_effect};
 use crate::recording::import::signals::signal::{Signal, size_below};
 use crate::recording::{Channel, Quantity};
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -117,10 +116,6 @@ fn nearest_unit(quantity: Quantity, units: &[&'static str], gain: f64, near: f64
     all.min_by(|a, b| off(a.1).total_cmp(&off(b.1))).filter(|(_, factor)| off(*factor) < near)
 }
 
-fn largest(columns: &[&Column]) -> f64 {
-    columns.iter().flat_map(|c| &c.v).fold(0.0, |m: f64, v| m.max(v.abs()))
-}
-
 /// A heading or a course: degrees or radians, clockwise or not.
 ///
 /// # Errors
@@ -134,28 +129,20 @@ pub fn direction(
     let name = columns.first().map_or("", |c| c.name.as_str());
     let raw = |factor: f64| Signal::new(columns, factor, 0.0, true).0;
     let agreement = |factor: f64| known.track.as_ref().and_then(|track| track.agreement(&raw(factor), 1.0));
-    let top = largest(columns);
-    let shown = Track::unit_of_direction(known.track.as_ref(), raw, top);
+    let (top, shown) = (largest(columns), compass_unit(columns, known.track.as_ref()));
     // A unit that the file states, and in which it goes with the track or has its size: milliradians, hundredths of a degree.
     let goes = |g: &&Given| agreement(g.factor).map_or(top * g.factor < MOST_RADIANS, |[length, _]| length > AGREE);
     let stated = given.filter(|g| g.by_user || (g.factor != 1.0 && Quantity::Angle.factor("deg") != Some(g.factor)));
-    let by_jumps = || jumps_by(columns, TAU).then_some(DirectionUnit { factor: 1.0, by_track: false });
-    let shown = shown.or_else(by_jumps);
-    let (unit, factor, why) = match (given, shown) {
+    let (unit, factor, why) = match (given, &shown) {
         (Some(given), _) if given.by_user || stated.filter(goes).is_some() => {
             (given.unit.as_str(), given.factor, String::new())
         }
-        (_, Some(shown)) => {
-            let (unit, words) = if shown.factor == 1.0 { ("rad", "radians") } else { ("deg", "degrees") };
-            let by_track = if shown.by_track && (top <= MOST_RADIANS || shown.factor == 1.0) {
-                format!("; the track goes that way in {words}")
-            } else {
-                String::new()
-            };
-            (unit, shown.factor, format!("values up to {}{by_track}", sig(top, 3)))
+        (_, Some(shown)) => (shown.unit, shown.factor, shown.why.clone()),
+        (Some(given), None) if top * given.factor < MOST_RADIANS || counts_turns(columns, given.factor) => {
+            (given.unit.as_str(), given.factor, String::new())
         }
-        (Some(given), None) => (given.unit.as_str(), given.factor, String::new()),
-        (None, None) => return Err(ask(meaning, name, "deg or rad")),
+        _ if top > MOST_RADIANS => return Err(ask(meaning, name, "deg, cdeg or mrad")),
+        _ => return Err(ask(meaning, name, "deg or rad")),
     };
     let agrees =
         given.is_some_and(|g| g.by_user || stated.filter(goes).is_some() || (g.factor / factor - 1.0).abs() < 1e-6);
@@ -284,7 +271,12 @@ pub fn yaw_rate(
         |gain: f64| if gain < 0.0 { (-1.0, "anticlockwise positive, turned") } else { (1.0, "clockwise positive") };
     match (found, given_by_user.or(given)) {
         (Some(ratio), given) => {
-            let near = nearest_unit(Quantity::AngularRate, &["deg/min", "deg/s", "rad/s", "mrad/s"], ratio.gain, NEAR);
+            let near = nearest_unit(
+                Quantity::AngularRate,
+                &["deg/min", "deg/s", "rad/s", "mrad/s", "cdeg/s"],
+                ratio.gain,
+                NEAR,
+            );
             let (sign, words) = sense(ratio.gain);
             match (near, given) {
                 (_, Some(given)) if given.by_user => {
@@ -318,8 +310,7 @@ pub fn yaw_rate(
 /// The question to ask.
 pub fn rudder(meaning: Meaning, columns: &[&Column], given: Option<&Given>, known: &Known) -> Result<Verdict, String> {
     let name = columns.first().map_or("", |c| c.name.as_str());
-    let top = columns.iter().map(|c| size_below(&c.v, 0.999)).fold(0.0, f64::max);
-    let degree = Quantity::Angle.factor("deg").unwrap_or(1.0);
+    let top = top(columns);
     let turned = known.psi.as_ref().map_or(0.0, |psi| {
         let (low, high) = psi.v.iter().fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
         high - low
@@ -328,7 +319,10 @@ pub fn rudder(meaning: Meaning, columns: &[&Column], given: Option<&Given>, know
     let too_little = top <= MOST_RUDDER && turned > 3.0;
     let mut verdict = match given {
         Some(given) if given.by_user || given.factor < 0.5 || top <= MOST_RUDDER => as_given(given, ""),
-        given if top > MOST_RUDDER => by_data("deg", degree, format!("angles up to {}", sig(top, 3)), given),
+        given if top > MOST_RUDDER => {
+            let (unit, factor) = rudder_unit(columns).ok_or_else(|| ask(meaning, name, "deg, cdeg or mrad"))?;
+            by_data(unit, factor, format!("angles up to {}", sig(top, 3)), given)
+        }
         given if too_little => {
             let why = format!("angles up to {} turn the ship through {} deg", sig(top, 3), sig(turned.to_degrees(), 3));
             by_data("rad", 1.0, why, given)
@@ -371,6 +365,19 @@ pub fn rudder(meaning: Meaning, columns: &[&Column], given: Option<&Given>, know
     Ok(verdict)
 }
 
+/// The unit of rudder angles by their size: degrees where a rudder reaches as many, or else the one in which it does.
+fn rudder_unit(columns: &[&Column]) -> Option<(&'static str, f64)> {
+    // A stray number far away is no measure of the angles.
+    let top = columns.iter().map(|c| size_below(&c.v, 0.95)).fold(0.0, f64::max);
+    let reached = |unit: &'static str| {
+        let factor = Quantity::Angle.factor(unit)?;
+        (top * factor <= Channel::Delta.info().limits.1).then_some((unit, factor))
+    };
+    let finer = [reached("cdeg"), reached("mrad")];
+    let known = finer.iter().flatten().count() == 1;
+    reached("deg").or_else(|| finer.into_iter().flatten().next().filter(|_| known))
+}
+
 /// Whether a rudder angle is written without its sign: the ship turns as fast to one side as to the other with angles of one sign.
 fn lacks_side(columns: &[&Column], known: &Known) -> bool {
     let Some(r) = &known.r else { return false };
@@ -393,7 +400,7 @@ pub fn rotation(
     known: &Known,
 ) -> Result<Verdict, String> {
     let name = columns.first().map_or("", |c| c.name.as_str());
-    let top = columns.iter().map(|c| size_below(&c.v, 0.999)).fold(0.0, f64::max);
+    let top = top(columns);
     let per_minute = Quantity::Rotation.factor("rpm").unwrap_or(1.0);
     let why = format!("rates up to {}", sig(top, 3));
     let mut verdict = match given {
@@ -431,18 +438,6 @@ pub fn rotation(
 
 /// No propeller turns faster \[rps\]: `trimtab help channels`.
 const FASTEST: f64 = 60.0;
-/// A jump by a whole turn is missed by at most this share of it.
-const OFF_TURN: f64 = 0.1;
-/// Jumps that show a unit.
-const TURNS: usize = 3;
-
-/// Whether a direction jumps by about so much, and never farther, where it passes the end of its range.
-fn jumps_by(columns: &[&Column], turn: f64) -> bool {
-    let steps = || columns.iter().flat_map(|c| c.v.windows(2)).map(|v| (v[1] - v[0]).abs());
-    let whole = |step: &f64| (step / turn - 1.0).abs() < OFF_TURN;
-    steps().filter(whole).count() >= TURNS && steps().all(|step| step <= turn)
-}
-
 /// Any other channel: its unit as given, degrees by size or by where they jump, rates by size, or a plain number.
 ///
 /// # Errors
@@ -454,11 +449,10 @@ pub fn other(meaning: Meaning, columns: &[&Column], given: Option<&Given>) -> Re
     }
     let quantity = meaning.quantity();
     let top = largest(columns);
+    if let Some(shown) = (quantity == Quantity::Angle).then(|| compass_unit(columns, None)).flatten() {
+        return Ok(by_data(shown.unit, shown.factor, shown.why, None));
+    }
     match quantity {
-        Quantity::Angle if top > MOST_RADIANS => {
-            Ok(by_data("deg", quantity.factor("deg").unwrap_or(1.0), format!("values up to {}", sig(top, 3)), None))
-        }
-        Quantity::Angle if jumps_by(columns, TAU) => Ok(by_data("rad", 1.0, "jumps by 2 pi".to_owned(), None)),
         Quantity::Rotation if top > TAU * FASTEST => {
             let per_minute = quantity.factor("rpm").unwrap_or(1.0);
             Ok(by_data("rpm", per_minute, format!("rates up to {}", sig(top, 3)), None))

@@ -41,7 +41,7 @@ pub(super) fn words(name: &str) -> Vec<String> {
 }
 
 /// Spellings of units at the end of a name, as in `sog_kn`, and the unit.
-const ENDINGS: [(&[&str], &str); 33] = [
+const ENDINGS: [(&[&str], &str); 38] = [
     (&["ms"], "ms"),
     (&["deg", "per", "min"], "deg/min"),
     (&["deg", "min"], "deg/min"),
@@ -55,6 +55,11 @@ const ENDINGS: [(&[&str], &str); 33] = [
     (&["rad", "sec"], "rad/s"),
     (&["mrad", "s"], "mrad/s"),
     (&["mrad"], "mrad"),
+    (&["cdeg", "s"], "cdeg/s"),
+    (&["cdeg", "per", "s"], "cdeg/s"),
+    (&["cdeg"], "cdeg"),
+    (&["centideg"], "cdeg"),
+    (&["centidegrees"], "cdeg"),
     (&["m", "s"], "m/s"),
     (&["m", "sec"], "m/s"),
     (&["mps"], "m/s"),
@@ -443,6 +448,9 @@ mod tests {
             ("Rudder angle [deg]", "delta", Some("deg")),
             ("SOG (kn)", "sog", Some("kn")),
             ("hdg_deg", "psi", Some("deg")),
+            ("rudder_cdeg", "delta", Some("cdeg")),
+            ("heading_centidegrees", "psi", Some("cdeg")),
+            ("yawrate_cdeg_s", "r", Some("cdeg/s")),
             ("RateOfTurn", "r", None),
             ("rot_deg_per_min", "r", Some("deg/min")),
             ("Heading (true)", "psi", None),

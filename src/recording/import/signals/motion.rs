@@ -168,25 +168,20 @@ const APART: f64 = 0.2;
 const COLUMNS: usize = 5;
 
 impl Track {
-    /// Which factor brings a direction to radians, 1 or that of degrees: the one in which it goes with the course. A heading that counts on
-    /// through full turns has large values in radians, too; its size decides where the track does not. `None` where neither does.
-    pub fn unit_of_direction(track: Option<&Self>, raw: impl Fn(f64) -> Signal, largest: f64) -> Option<DirectionUnit> {
+    /// The one of these factors with which a direction surely goes with the course, as it does with none of the others: a heading that counts
+    /// on through full turns has large values in radians, too. `None` where the track does not show it.
+    pub fn unit_of_direction(&self, raw: impl Fn(f64) -> Signal, factors: &[f64]) -> Option<f64> {
         let of = |factor: f64| {
             let signal = raw(factor);
-            let both = [1.0, -1.0].map(|sense| track.and_then(|track| track.agreement(&signal, sense)));
+            let both = [1.0, -1.0].map(|sense| self.agreement(&signal, sense));
             let length = both.iter().flatten().map(|a| a[0]).fold(0.0, f64::max);
             let along = both[0].is_some_and(|[length, off]| length > AGREE && off.abs() < ALONG);
-            (length, along || track.is_some_and(|track| track.anticlockwise(&signal).is_some()))
+            (length, along || self.anticlockwise(&signal).is_some())
         };
-        let [deg, rad] = [DEGREE, 1.0].map(of);
+        let all: Vec<(f64, (f64, bool))> = factors.iter().map(|factor| (*factor, of(*factor))).collect();
         let sure = |a: (f64, bool), b: (f64, bool)| (a.0 > AGREE && a.0 > b.0 + 0.1) || (a.1 && !b.1);
-        if sure(deg, rad) {
-            Some(DirectionUnit { factor: DEGREE, by_track: true })
-        } else if sure(rad, deg) {
-            Some(DirectionUnit { factor: 1.0, by_track: true })
-        } else {
-            (largest > MOST_RADIANS).then_some(DirectionUnit { factor: DEGREE, by_track: false })
-        }
+        let best = all.iter().find(|(own, a)| all.iter().all(|(other, b)| own == other || sure(*a, *b)));
+        best.map(|(factor, _)| *factor)
     }
 
     /// The angle from a heading \[rad\] to the course that neither a current nor turning explains; `None` where it is not four standard
@@ -244,24 +239,10 @@ impl Track {
     }
 }
 
-/// The unit of a direction.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DirectionUnit {
-    /// SI value of one.
-    pub factor: f64,
-    /// Whether the track shows it; otherwise the size of the values does.
-    pub by_track: bool,
-}
-
-/// One degree \[rad\].
-const DEGREE: f64 = PI / 180.0;
 /// Directions agree where the mean of their difference is this long, of 1.
 pub const AGREE: f64 = 0.8;
 /// A heading goes with the course within this angle on the mean of a log \[rad\]: 14 deg, more than drift, current and variation mostly make.
 const ALONG: f64 = 0.25;
-/// Any heading or course above this is no radian, but for one that counts turns.
-pub const MOST_RADIANS: f64 = 7.0;
-
 /// Which way a ship turns when its rudder is put over: the coefficient b of
 /// `r(t + h) - r(t) = a r(t) + b mean(delta over t to t + h) + c`, over its standard error; `None` where it cannot be determined.
 pub fn rudder_effect(r: &Signal, delta: &Signal) -> Option<f64> {
