@@ -320,7 +320,7 @@ fn log_is_imported(name: &str, bytes: &[u8]) -> bool {
     for recording in &imported.recordings {
         let text = recording_csv(recording);
         let Ok(recording) = Recording::parse(&text, Path::new("log.csv"), &ColumnMap::default()) else { continue };
-        let part = SplitPart { file: "log.csv".into(), session: None, recording: &recording };
+        let part = SplitPart { file: "log.csv".into(), session: None, start: None, recording: &recording };
         let _ = split(&[part], &SplitSettings::default());
     }
     true

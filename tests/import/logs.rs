@@ -790,6 +790,42 @@ fn a_study_and_a_recording_are_split_anew() {
 }
 
 #[test]
+fn a_gap_gives_the_same_sessions_however_it_is_said() {
+    let study = Study::new();
+    let log = csv(0.0, |t| t < 900.0, |_| true);
+    // Three files of one week, a day apart, and one of the next.
+    let files = [("a.csv", "01"), ("b.csv", "02"), ("c.csv", "03"), ("d.csv", "10")];
+    for (name, day) in files {
+        study.write(name, &log.replace("2024-05-01", &format!("2024-05-{day}")));
+    }
+    let sessions = |json: &serde_json::Value| {
+        let runs = at(json, "result.runs").as_array().unwrap();
+        runs.iter().map(|r| r["session"].as_str().unwrap().to_owned()).collect::<std::collections::BTreeSet<_>>().len()
+    };
+    let all = |more: &[&str]| {
+        let command = ["import", "a.csv", "b.csv", "c.csv", "d.csv", "--ship", "ship.toml"];
+        let more: Vec<&str> = command.iter().chain(more).copied().collect();
+        more.into_iter().map(str::to_owned).collect::<Vec<_>>()
+    };
+    for (more, expected) in [
+        (&["--session-gap", "260000"][..], 2),
+        (&["--sessions", "gaps=260000"], 2),
+        (&["--sessions", "gaps=260000", "--session-gap", "260000"], 2),
+        (&["--sessions", "gaps"], 4),
+    ] {
+        let command = [all(more), vec!["--out".to_owned(), "own".to_owned()]].concat();
+        let command: Vec<&str> = command.iter().map(String::as_str).collect();
+        assert_eq!(sessions(&study.json(&command)), expected, "{more:?}");
+        for (gap, expected) in [("gaps=260000", 2), ("gaps=36000", 4)] {
+            assert_eq!(sessions(&study.json(&["split", "own/study.toml", "--sessions", gap])), expected, "{gap}");
+        }
+    }
+    let both = all(&["--sessions", "gaps=600", "--session-gap", "900", "--out", "own"]);
+    let both: Vec<&str> = both.iter().map(String::as_str).collect();
+    contains_all(&study.refuses(&both), &["two gaps between sessions", "give one of them"]);
+}
+
+#[test]
 fn mistakes_are_mended_from_the_message() {
     let log = csv(0.0, |t| t < 900.0, |_| true);
     let cases: [(&str, &[&str], &[&str]); 8] = [

@@ -218,7 +218,7 @@ pub fn made(args: &Args) -> Result<Made, CliError> {
             Recording::parse(&text, &args.out.join(&file), &map).map_err(trimtab::study::StudyError::from)?;
         recordings.push((file, recording));
     }
-    let Divided { runs, skipped, lost, table } = divided(args, &imported, &recordings)?;
+    let Divided { runs, skipped, lost, table } = divided(args, settings.session_gap, &imported, &recordings)?;
     imported.notes.extend(lost);
     output.file("runs.csv", table.as_bytes());
     let mut kept = Vec::new();
@@ -273,7 +273,18 @@ fn settings(args: &Args, craft: Option<&Ship>) -> Result<ImportSettings, CliErro
     }
     let driven = craft.map_or_else(Driven::default, Driven::of);
     let choices = Choices { columns, units: pairs("--unit", &args.unit)?, driven };
-    Ok(ImportSettings { choices, session_gap: args.session_gap })
+    let by_sessions = match args.split.settings()?.sessions {
+        Sessions::Gaps(gap) => Some(gap),
+        _ => None,
+    };
+    if let (Some(gap), Some(other)) = (args.session_gap, by_sessions)
+        && gap != other
+    {
+        return Err(CliError::Argument(format!(
+            "--session-gap {gap} and --sessions gaps={other} say two gaps between sessions: give one of them"
+        )));
+    }
+    Ok(ImportSettings { choices, session_gap: args.session_gap.or(by_sessions) })
 }
 
 /// The channel of an actuator that is given by its own name or by that of the actuator, which then is its first.
@@ -321,13 +332,22 @@ struct Divided {
     table: String,
 }
 
-fn divided(args: &Args, imported: &Imported, recordings: &[(String, Recording)]) -> Result<Divided, CliError> {
-    let settings = args.split.settings()?;
-    let sessions = imported.sessions(args.session_gap);
+fn divided(
+    args: &Args,
+    gap: Option<f64>,
+    imported: &Imported,
+    recordings: &[(String, Recording)],
+) -> Result<Divided, CliError> {
+    let mut settings = args.split.settings()?;
+    // Recordings are of sessions by gaps already.
+    if let Sessions::Gaps(_) = settings.sessions {
+        settings.sessions = Sessions::Known;
+    }
+    let sessions = imported.sessions(gap);
     let known = settings.sessions == Sessions::Known;
     let mut parts = Vec::new();
     for ((file, recording), session) in recordings.iter().zip(sessions) {
-        parts.push(SplitPart { file: file.clone(), session: Some(session).filter(|_| known), recording });
+        parts.push(SplitPart { file: file.clone(), session: Some(session).filter(|_| known), start: None, recording });
     }
     let failed = |error: SplitError, more: String| CliError::Argument(format!("{}: {error}{more}", args.out.display()));
     if args.no_split {

@@ -5,9 +5,11 @@ use crate::cli::shared::answer::Answer;
 use crate::cli::shared::error::CliError;
 use crate::cli::shared::output::{Output, OutputArgs};
 use serde::Serialize;
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use trimtab::numbers::numerals::fixed;
+use trimtab::recording::import::moment;
 use trimtab::recording::split::{Kind, Sessions, SplitPart, SplitRun, SplitSettings, TestBy, runs_csv, split};
 use trimtab::recording::{ColumnMap, Recording, Split};
 use trimtab::report::Table;
@@ -91,6 +93,7 @@ struct Report<'a> {
 struct Part {
     file: String,
     session: Option<String>,
+    start: Option<f64>,
     recording: Recording,
 }
 
@@ -102,7 +105,12 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
     let parts = if is_study { of_study(args, &mut output)? } else { vec![of_recording(args, &mut output)?] };
     let borrowed: Vec<SplitPart<'_>> = parts
         .iter()
-        .map(|p| SplitPart { file: p.file.clone(), session: p.session.clone(), recording: &p.recording })
+        .map(|p| SplitPart {
+            file: p.file.clone(),
+            session: p.session.clone(),
+            start: p.start,
+            recording: &p.recording,
+        })
         .collect();
     let (runs, skipped) = split(&borrowed, &settings)
         .map_err(|error| CliError::Argument(format!("{}: {error}", args.input.display())))?;
@@ -133,6 +141,7 @@ fn of_study(args: &Args, output: &mut Output) -> Result<Vec<Part>, CliError> {
     let data = std::fs::read_to_string(&args.input).ok().and_then(|text| text.parse::<toml::Table>().ok());
     let has_data = data.is_some_and(|table| table.contains_key("data"));
     let folder = args.input.parent().unwrap_or(Path::new(""));
+    let starts = starts(folder, output);
     let mut parts: Vec<Part> = Vec::new();
     let mut seen: Vec<PathBuf> = Vec::new();
     for listed in &study.runs {
@@ -146,10 +155,29 @@ fn of_study(args: &Args, output: &mut Output) -> Result<Vec<Part>, CliError> {
         let session = Some(listed.labels.session.clone()).filter(|s| sessions.len() == 1 && s != "unnamed");
         let relative = listed.file.strip_prefix(folder).ok().filter(|_| !has_data);
         let file = relative.map_or_else(|| absolute(&listed.file), Path::to_owned).to_string_lossy().replace('\\', "/");
-        parts.push(Part { file, session, recording: study.recording(listed)? });
+        let start = listed.file.file_stem().and_then(|stem| starts.get(&*stem.to_string_lossy())).copied();
+        parts.push(Part { file, session, start, recording: study.recording(listed)? });
     }
     output.reads_files(&seen);
+    // Gaps are between those that follow one another in time.
+    if parts.iter().all(|p| p.start.is_some()) {
+        parts.sort_by(|a, b| a.start.unwrap_or(0.0).total_cmp(&b.start.unwrap_or(0.0)));
+    }
     Ok(parts)
+}
+
+/// When the recordings of a study began \[s\], by their names, as its import wrote it beside the study.
+fn starts(folder: &Path, output: &mut Output) -> BTreeMap<String, f64> {
+    let path = folder.join("import.json");
+    let Some(report) = std::fs::read(&path).ok().and_then(|bytes| serde_json::from_slice::<Value>(&bytes).ok()) else {
+        return BTreeMap::new();
+    };
+    output.reads_files(&[path]);
+    let start = |recording: &Value| {
+        let seconds = moment(recording.get("start")?.as_str()?)?;
+        Some((recording.get("name")?.as_str()?.to_owned(), seconds))
+    };
+    report["result"]["recordings"].as_array().into_iter().flatten().filter_map(start).collect()
 }
 
 fn of_recording(args: &Args, output: &mut Output) -> Result<Part, CliError> {
@@ -157,7 +185,7 @@ fn of_recording(args: &Args, output: &mut Output) -> Result<Part, CliError> {
     let map = args.column_map.as_deref().map_or_else(|| Ok(ColumnMap::default()), ColumnMap::read);
     let recording = map.and_then(|map| Recording::read(&args.input, &map)).map_err(StudyError::from)?;
     let file = absolute(&args.input).to_string_lossy().replace('\\', "/");
-    Ok(Part { file, session: None, recording })
+    Ok(Part { file, session: None, start: None, recording })
 }
 
 fn absolute(path: &Path) -> PathBuf {

@@ -14,6 +14,7 @@ mod whole;
 pub use columns::choose::{Choices, Unused};
 pub use columns::take::Taken;
 pub use error::ImportError;
+pub use formats::clock::moment;
 pub use formats::read::read_bytes;
 pub use rows::Rows;
 pub use signals::log::{Clock, Column, Log, Meaning};

@@ -38,6 +38,8 @@ pub struct SplitPart<'a> {
     pub file: String,
     /// Its session, where that is known.
     pub session: Option<String>,
+    /// When its time 0 was, on a clock that it shares with the other recordings, where that is known \[s\].
+    pub start: Option<f64>,
     /// The recording.
     pub recording: &'a Recording,
 }
@@ -97,18 +99,20 @@ pub fn split(parts: &[SplitPart<'_>], settings: &SplitSettings) -> Result<(Vec<S
     let longest = settings.longest.unwrap_or(LONGEST * scale);
     let (mut runs, mut skipped) = (Vec::new(), 0);
     let mut numbers = Numbers { session: 1, ..Numbers::default() };
+    let mut before: Option<f64> = None;
     for (i, (part, segments)) in parts.iter().zip(&controls).enumerate() {
         let own = session_of(part, &settings.sessions)?;
-        let mut last_end: Option<f64> = None;
-        // Where nothing distinguishes sessions, recordings share one.
-        numbers.session += usize::from(i > 0 && matches!(settings.sessions, Sessions::Gaps(_)));
+        let mut last_end = before.zip(part.start).map(|(end, start)| end - start);
+        // Where nothing says when recordings began, each is a session of those by gaps, and otherwise they share one.
+        numbers.session += usize::from(i > 0 && last_end.is_none() && matches!(settings.sessions, Sessions::Gaps(_)));
         for c in segments {
             let (Some(first), Some(last)) = (c.t.first(), c.t.last()) else { continue };
             if let Sessions::Known | Sessions::Gaps(_) = settings.sessions {
                 let gap = if let Sessions::Gaps(gap) = settings.sessions { gap } else { USUAL_GAP };
-                numbers.session += usize::from(own.is_none() && last_end.is_some_and(|end| first - end >= gap));
+                numbers.session += usize::from(own.is_none() && last_end.is_some_and(|end| first - end > gap));
             }
             last_end = Some(*last);
+            before = part.start.map(|start| start + last);
             if last - first < SHORTEST * scale || c.len() < FEWEST {
                 skipped += 1;
                 continue;

@@ -7,7 +7,7 @@ pub enum Sessions {
     /// As the study has them, else by gaps of half an hour.
     #[default]
     Known,
-    /// By gaps in time of so many seconds and more, and by recording.
+    /// By gaps in time of more than so many seconds, also from one recording to the next; each is one where nothing says when it began.
     Gaps(f64),
     /// By the date in the name of the file.
     Dates,

@@ -395,6 +395,11 @@ pub fn written(seconds: f64) -> String {
     )
 }
 
+/// Seconds since 1970 of a time that is so written, as that at which a recording began.
+pub fn moment(text: &str) -> Option<f64> {
+    date_time(text, DateOrder::DayFirst)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
