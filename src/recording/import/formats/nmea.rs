@@ -114,6 +114,8 @@ struct Record {
 /// Why a line gives nothing.
 enum Bad {
     Checksum,
+    /// It has no checksum, and all others do.
+    Cut,
     Broken,
 }
 
@@ -143,8 +145,21 @@ fn is_makers(address: &str) -> bool {
     address.starts_with('P')
 }
 
-/// A line as a sentence; `None` for a line without one.
-fn sentence(line: &str) -> Option<Result<Sentence<'_>, Bad>> {
+/// Share of the sentences with a checksum from which one without is cut.
+const CHECKED: f64 = 0.95;
+
+/// Whether the sentences of a text have checksums: nearly all of them do.
+fn has_checksums(text: &str) -> bool {
+    let (mut all, mut checked) = (0, 0);
+    for (_, sentence) in text.lines().filter_map(framed) {
+        all += 1;
+        checked += usize::from(sentence.contains('*'));
+    }
+    checked > 0 && checked as f64 >= CHECKED * f64::from(all)
+}
+
+/// A line as a sentence, which has a checksum where those of its file do; `None` for a line without one.
+fn sentence(line: &str, checked: bool) -> Option<Result<Sentence<'_>, Bad>> {
     let Some((before, text)) = framed(line) else {
         return line.contains(['$', '!']).then_some(Err(Bad::Broken));
     };
@@ -157,6 +172,7 @@ fn sentence(line: &str) -> Option<Result<Sentence<'_>, Bad>> {
             }
             body
         }
+        None if checked => return Some(Err(Bad::Cut)),
         None => text,
     };
     let mut fields = body.split(',');
@@ -313,11 +329,12 @@ fn more(s: &Sentence<'_>, record: &mut Record) {
 pub fn read_nmea(path: &Path, bytes: &[u8]) -> Result<Vec<Log>, ImportError> {
     let text = decoded(bytes);
     let (mut records, mut unknown) = (Vec::new(), BTreeMap::<String, usize>::new());
-    let (mut failed, mut broken, mut unchecked, mut unsided) = (Vec::new(), Vec::new(), 0, 0);
+    let (mut failed, mut cut, mut broken, mut unchecked, mut unsided) = (Vec::new(), Vec::new(), Vec::new(), 0, 0);
+    let checked = has_checksums(&text);
     for (i, line) in text.lines().enumerate() {
-        match sentence(line) {
+        match sentence(line, checked) {
             Some(Ok(s)) => {
-                unchecked += usize::from(!line.contains('*'));
+                unchecked += usize::from(framed(line).is_some_and(|(_, sentence)| !sentence.contains('*')));
                 let record = record(&s);
                 if record.values.is_empty() && record.time.is_none() && !KNOWN.contains(&s.kind) {
                     *unknown.entry(s.kind.to_owned()).or_default() += 1;
@@ -327,12 +344,18 @@ pub fn read_nmea(path: &Path, bytes: &[u8]) -> Result<Vec<Log>, ImportError> {
                 records.push(record);
             }
             Some(Err(Bad::Checksum)) => failed.push(i + 1),
+            Some(Err(Bad::Cut)) => cut.push(i + 1),
             Some(Err(Bad::Broken)) => broken.push(i + 1),
             None => {}
         }
     }
     let mut notes = Vec::new();
-    for (lines, what) in [(&failed, "fail their checksum"), (&broken, "are broken")] {
+    let lost = [
+        (&failed, "fail their checksum"),
+        (&cut, "have no checksum where the others have one, so that they are cut,"),
+        (&broken, "are broken"),
+    ];
+    for (lines, what) in lost {
         if let Some(first) = lines.first() {
             notes.push(format!("{} lines {what} and are left out, the first is line {first}", lines.len()));
         }
@@ -589,6 +612,26 @@ mod tests {
         );
         assert!(log.notes[1].contains("broken"), "{:?}", log.notes);
         assert_eq!(log.columns[0].v.len(), 2);
+    }
+
+    #[test]
+    fn a_sentence_without_its_checksum_is_cut_where_the_others_have_one() {
+        let second = |s: usize| {
+            summed(&format!("GPRMC,1000{s:02}.00,A,5412.000,N,01030.000,E,10.0,090.0,010524,,,A"))
+                + &summed("ERRPM,S,1,220.0,100,A")
+        };
+        let whole: String = (0..20).map(second).collect();
+        let rates = |log: &Log| log.columns.iter().find(|c| c.name == "RPM shaft 1").unwrap().v.clone();
+        // The checksum of a tag block is not that of the sentence behind it.
+        for before in ["", "\\s:VDR01,c:1714557619*1A\\"] {
+            let log = read(&format!("{whole}{before}$ERRPM,S,1,2\n"));
+            assert_eq!(rates(&log), vec![220.0; 20], "{before}");
+            assert!(log.notes[0].starts_with("1 lines have no checksum where the others have one"), "{:?}", log.notes);
+        }
+        let unsummed: String = whole.lines().map(|l| format!("{}\n", l.split('*').next().unwrap_or(l))).collect();
+        let log = read(&unsummed);
+        assert_eq!(rates(&log).len(), 20);
+        assert!(log.notes[0].starts_with("40 sentences have no checksum and are taken"), "{:?}", log.notes);
     }
 
     #[test]
