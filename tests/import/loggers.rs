@@ -645,10 +645,48 @@ fn a_clock_in_any_unit_is_told_with_the_flag_that_mends_it() {
         let imported = written(&text, &ImportSettings { choices, ..ImportSettings::default() }).unwrap();
         assert!(off(&imported) < 0.01, "{unit}");
     }
+    // Nor does it take a recorded speed; numbers as large as those of an epoch are none in such steps.
+    let still = |text: &str| text.replacen("sog_kn,cog", "a,b", 1);
+    for (scale, more, unit) in [(1e6, 0.0, "us"), (1e6, 123_456_789.0, "us"), (1e9, 5e9, "ns"), (1e3, 0.0, "ms")] {
+        let text = still(&with(scale, "timestamp"));
+        let moved = text.lines().map(|line| match line.split_once(',') {
+            Some((t, rest)) => t.parse::<f64>().map_or(format!("{line}\n"), |t| format!("{},{rest}\n", t + more)),
+            None => String::new(),
+        });
+        let said = written(&moved.collect::<String>(), &ImportSettings::default()).unwrap_err();
+        contains_all(&said, &["too far to show a manoeuvre", "2.00 s apart", &format!("pass `--unit t={unit}`")]);
+    }
     // A time in words that nobody reads.
     let odd: String = with(1.0, "Time").lines().map(|line| format!("after {line}\n")).collect();
     let said = written(&odd.replacen("after ", "", 1), &ImportSettings::default()).unwrap_err();
     contains_all(&said, &["is no time that is read here", "135/08:00:00"]);
+}
+
+#[test]
+fn files_whose_clocks_differ_by_a_zone_are_told_with_it() {
+    let rows = sailed(0.0);
+    let fixes = |row: &Row| format!("{},{:.7},{:.7}", iso(row.t), row.place[0], row.place[1]);
+    let bridge = |row: &Row| {
+        let local = iso(row.t + 7200.0);
+        format!("{},{:.2},{:.1},120", local.trim_end_matches('Z'), row.heading, row.rudder)
+    };
+    let text = |names: &str, row: &dyn Fn(&Row) -> String| {
+        rows.iter().fold(format!("{names}\n"), |text, r| format!("{text}{}\n", row(r)))
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let paths = ["gps.csv", "bridge.csv"].map(|name| folder.path().join(name));
+    let both = |time: &str| {
+        std::fs::write(&paths[0], text("time_utc,lat,lon", &fixes)).unwrap();
+        std::fs::write(&paths[1], text(&format!("{time},heading,rudder deg,rpm"), &bridge)).unwrap();
+        import(&paths, &ImportSettings::default()).map_err(|e| e.to_string())
+    };
+    let said = both("local time").unwrap_err();
+    contains_all(
+        &said,
+        &["gps.csv (2021-06-03 10:00:00 to", "bridge.csv (2021-06-03 12:00:00 to", "begins 7200 s after"],
+    );
+    contains_all(&said, &["have no time in common", "as in `Time (UTC+2)`"]);
+    assert!(off(&both("local time (UTC+2)").unwrap()) < 0.1);
 }
 
 #[test]

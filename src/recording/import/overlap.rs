@@ -110,6 +110,38 @@ fn lacks(log: &Log, choices: &Choices) -> Option<Channel> {
     (!has(Channel::Psi)).then_some(Channel::Psi).or_else(|| driven.missing(has).next())
 }
 
+/// Steps of the zones of the world \[s\], and the largest difference of two of them.
+const ZONES: f64 = 900.0;
+const FARTHEST: f64 = 26.0 * 3600.0;
+
+/// What to do about files that record parts of one voyage and have no time in common; `None` where all of them have some.
+pub fn apart(logs: &[Log]) -> Option<String> {
+    let ranges: Vec<[f64; 2]> = logs.iter().map(range).collect();
+    let pairs = (0..logs.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
+    let disjoint = |(i, j): &(usize, usize)| ranges[*i][0] > ranges[*j][1] || ranges[*j][0] > ranges[*i][1];
+    let (i, j) = pairs.filter(|(i, j)| logs[*i].path != logs[*j].path).find(disjoint)?;
+    let (first, later) = if ranges[i][0] < ranges[j][0] { (i, j) } else { (j, i) };
+    let time = |t: f64| if logs[i].clock == Clock::Utc { written(t) } else { format!("{t:.0} s") };
+    let [a, b] = [first, later].map(|k| {
+        let [from, to] = ranges[k].map(time);
+        format!("{} ({from} to {to})", logs[k].path.display())
+    });
+    let by = ranges[later][0] - ranges[first][0];
+    let hours = (by / ZONES).round() * ZONES / 3600.0;
+    let zone = (logs[i].clock == Clock::Utc && (by - 3600.0 * hours).abs() < 60.0 && by < FARTHEST).then(|| {
+        let (whole, minutes) = (hours.trunc(), (60.0 * hours.fract()).round());
+        let zone = if minutes == 0.0 { format!("UTC+{whole}") } else { format!("UTC+{whole}:{minutes:02}") };
+        format!(
+            "if the clock of {} shows a local time, write its zone into the name of its time, as in `Time ({zone})`; otherwise ",
+            logs[later].path.display()
+        )
+    });
+    Some(format!(
+        "{a} and {b} have no time in common, and none is a recording by itself: the second begins {by:.0} s after the first; {}correct the times of one of them, or import each with the files of its own time",
+        zone.unwrap_or_default()
+    ))
+}
+
 fn refusal(first: &Log, second: &Log, column: &str, from: f64, lacking: Option<Channel>) -> ImportError {
     let [a, b] = [first, second].map(|log| log.path.display());
     let from = if first.clock == Clock::Utc { written(from) } else { format!("{from:.0} s") };

@@ -7,14 +7,15 @@ use super::columns::take::{Signals, Taken, take};
 use super::error::{ImportError, flag};
 use super::formats::clock::written;
 use super::formats::read::read;
-use super::overlap::{range, shifts};
+use super::overlap::{apart, range, shifts};
 use super::rows::{Rows, rows};
 use super::signals::fills::take_out;
 use super::signals::held::release;
 use super::signals::log::{Clock, Log, Meaning, needed};
 use super::signals::signal::Signal;
+use crate::numerals::sig;
 use crate::recording::wrap::repair;
-use crate::recording::{Channel, Driven};
+use crate::recording::{Channel, Driven, Quantity};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
@@ -111,6 +112,7 @@ fn imported(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, Im
     missing(&chosen, &signals, &logs, driven).map_err(|error| with_texts(error, &logs))?;
     mend_heading(&mut signals);
     let (table, filled) = rows(&signals);
+    let step = table.step;
     let longest = settings.session_gap.unwrap_or(SESSION_GAP);
     let ends: Vec<[f64; 2]> = logs.iter().map(range).collect();
     let starts: Vec<f64> = ends.iter().map(|e| e[0]).collect();
@@ -129,10 +131,7 @@ fn imported(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, Im
         let shift = within.map_or(0.0, |i| shifts[i]);
         recordings.push(recording(part, own.map(|i| &logs[i]), shift, &logs));
     }
-    if recordings.is_empty() {
-        let text = "position and heading are never recorded together; are the clocks of the files the same?";
-        return Err(ImportError::File { path: files.first().cloned().unwrap_or_default(), message: text.to_owned() });
-    }
+    together(&recordings, &logs, driven, step)?;
     name_apart(&mut recordings);
     for log in &logs {
         notes.extend(log.notes.iter().map(|note| format!("{}: {note}", log.path.display())));
@@ -162,6 +161,53 @@ fn imported(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, Im
     imported.part_with_lonely();
     imported.tell_gaps();
     Ok(imported)
+}
+
+/// No manoeuvre is seen in rows so far apart \[s\].
+const SLOW: f64 = 300.0;
+
+/// Refuses files of which no recording comes that has position or velocity, heading and every input: with steps too long for one, the unit of the time is
+/// another, and where files have no time in common, their clocks differ.
+fn together(recordings: &[ImportedRecording], logs: &[Log], driven: &Driven, step: f64) -> Result<(), ImportError> {
+    let is_whole = |recording: &ImportedRecording| {
+        let has = |channel| recording.rows.channels.iter().any(|(c, _)| *c == channel);
+        let moves = has(Channel::X) || has(Channel::U);
+        moves && has(Channel::Psi) && driven.missing(has).next().is_none()
+    };
+    let own = logs.iter().all(|log| log.clock == Clock::Own);
+    if recordings.iter().any(is_whole) && !(own && step > SLOW) {
+        return Ok(());
+    }
+    let fail = |message| {
+        let path = logs.first().map_or_else(PathBuf::new, |log| log.path.clone());
+        Err(ImportError::File { path, message })
+    };
+    if step > SLOW {
+        let finer = ["ms", "us", "ns"].into_iter().filter_map(|unit| Some((unit, Quantity::Time.factor(unit)? * step)));
+        let mut flags = finer.filter(|(_, step)| *step <= 0.2 * SLOW).map(|(unit, step)| {
+            format!(
+                "if it counts {}, so that they are {} s apart, pass `--unit t={unit}`",
+                in_words(unit),
+                sig(step, 3)
+            )
+        });
+        let flag = flags.next().filter(|_| own).unwrap_or_else(|| "rows a few seconds apart are needed".to_owned());
+        return fail(format!(
+            "the rows are {} s apart as their time is read, too far to show a manoeuvre: {flag}",
+            sig(step, 3)
+        ));
+    }
+    match apart(logs) {
+        Some(text) => Err(ImportError::Choice(text)),
+        None if recordings.is_empty() => fail("position and heading are never recorded together for ten rows: drop-outs of one end where those of the other begin; leave one of the columns out, or correct the times".to_owned()),
+        None => Ok(()),
+    }
+}
+
+/// The name of a unit, in the plural.
+fn in_words(unit: &str) -> &str {
+    let all = Quantity::Time.units().find(|u| u.spellings.contains(&unit));
+    all.and_then(|u| u.spellings.last()).copied().unwrap_or(unit)
 }
 
 /// Puts a heading that a logger interpolated across north on the short way round, before velocities are turned by it.

@@ -2,8 +2,8 @@
 //! Whether a column is what its name says is checked against its values elsewhere.
 
 use super::vocabulary::{
-    BESIDE_COUNTS, BESIDE_SHIPS, CALENDAR, CHANGES, CLOCKS, COUNTS, DRIVES, FROM_BOW, FROM_NORTH, MAGNETIC, MOVES,
-    NEUTRAL, ORDERS, PHRASES, RELATIVE, SHIPS, SINCE, SPEEDS, VAGUE, WIND, WIND_DIRECTIONS, WIND_SPEEDS, is_on,
+    BESIDE_COUNTS, BESIDE_SHIPS, CALENDAR, CHANGES, CLOCKS, COUNTS, DRIVES, FROM_BOW, FROM_NORTH, LABVIEW, MAGNETIC,
+    MOVES, NEUTRAL, ORDERS, PHRASES, RELATIVE, SHIPS, SINCE, SPEEDS, VAGUE, WIND, WIND_DIRECTIONS, WIND_SPEEDS, is_on,
     phrases,
 };
 use crate::recording::file::unit::scaled;
@@ -320,7 +320,7 @@ pub fn time_rank(name: &str) -> u8 {
     if any(CLOCKS) {
         return if parts.iter().any(since) { 1 } else { 2 + u8::from(parts.iter().all(|p| is_on(CLOCKS, p))) };
     }
-    if any(SINCE) {
+    if any(SINCE) || parts.join(" ") == LABVIEW {
         return 1;
     }
     u8::from((parts.first().is_some_and(|p| p == "t") && parts.len() <= 2) || time_unit(name).is_some())
@@ -419,6 +419,9 @@ mod tests {
             ("Engine hours", None),
             ("Time", None),
         ];
+        for (name, rank) in [("Time", 3), ("datenum", 1), ("X_Value", 1), ("tow", 1), ("GPS TOW", 1), ("x", 0)] {
+            assert_eq!(time_rank(name), rank, "{name}");
+        }
         cases.iter().for_each(|(name, unit)| assert_eq!(time_unit(name), *unit, "{name}"));
     }
 

@@ -153,8 +153,10 @@ pub const CALENDAR: [&str; 6] = [
 pub const COUNTS: [(&str, &str); 2] = [("d", "doy, yearday, julian, jday"), ("h", "hour, hours")];
 /// Words that may stand beside them.
 pub const BESIDE_COUNTS: &str = "day, of, the, year, decimal, utc, time, number, no";
-/// Words of a time since something.
-pub const SINCE: &str = "stamp, elapsed, seconds, secs, sec, millis, secondes, segundos, secondi";
+/// Words of a time since something: of the start of a GPS week, of the days of MATLAB.
+pub const SINCE: &str = "tow, datenum, stamp, elapsed, seconds, secs, sec, millis, secondes, segundos, secondi";
+/// The name that LabVIEW gives the times of its rows.
+pub const LABVIEW: &str = "x value";
 /// Words of a column that identifies the ship of each row.
 pub const SHIPS: &str = "mmsi, imo, callsign, vessel, ship, schiff, navire, nave, buque";
 /// Words that may stand next to these in the name of such a column.

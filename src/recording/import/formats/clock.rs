@@ -313,6 +313,9 @@ pub struct NumericTime {
     pub words: &'static str,
 }
 
+/// Steps of a log are no longer than this \[s\].
+const LONGEST_STEP: f64 = 3600.0;
+
 /// What a column of numbers counts, by its size: epochs are unlike any other number.
 pub fn numeric_time(values: &[f64], unit: Option<f64>) -> NumericTime {
     let mut finite: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
@@ -324,12 +327,15 @@ pub fn numeric_time(values: &[f64], unit: Option<f64>) -> NumericTime {
         return time(Clock::Utc, unit, 0.0, "time since 1970");
     }
     let own = unit.filter(|unit| typical * unit < 1e8);
+    // Numbers that would be an epoch by their size and whose steps would then be hours count something finer from a start of their own.
+    let step = median(values.windows(2).map(|v| v[1] - v[0]).filter(|s| *s > 0.0).collect()).unwrap_or(0.0);
+    let epoch = |v: f64, above: f64, factor: f64| v > above && step * factor <= LONGEST_STEP;
     match typical {
         _ if own.is_some() => time(Clock::Own, own.unwrap_or(1.0), 0.0, "time from a start of its own"),
-        v if v > 1e17 => time(Clock::Utc, 1e-9, 0.0, "nanoseconds since 1970"),
-        v if v > 1e14 => time(Clock::Utc, 1e-6, 0.0, "microseconds since 1970"),
-        v if v > 1e11 => time(Clock::Utc, 1e-3, 0.0, "milliseconds since 1970"),
-        v if v > 1e8 => time(Clock::Utc, 1.0, 0.0, "seconds since 1970"),
+        v if epoch(v, 1e17, 1e-9) => time(Clock::Utc, 1e-9, 0.0, "nanoseconds since 1970"),
+        v if epoch(v, 1e14, 1e-6) => time(Clock::Utc, 1e-6, 0.0, "microseconds since 1970"),
+        v if epoch(v, 1e11, 1e-3) => time(Clock::Utc, 1e-3, 0.0, "milliseconds since 1970"),
+        v if epoch(v, 1e8, 1.0) => time(Clock::Utc, 1.0, 0.0, "seconds since 1970"),
         // Days of this century until 2050, by what they count from; a second is a hundred-thousandth.
         v if (36_526.0..54_789.0).contains(&v) && fine(values) => {
             time(Clock::Utc, DAY, 25_569.0, "days of a spreadsheet")
