@@ -470,6 +470,17 @@ fn units() -> Vec<Case> {
             here,
             "unit of n",
         ),
+        case(
+            "degrees of latitude and longitude read as metres",
+            Files::sound().all(|t| {
+                t.each("x", |_, x| 54.0 + x / 111_200.0);
+                t.each("y", |_, y| 10.0 + y / 111_200.0);
+            }),
+            "unit_error",
+            Channel::U,
+            Where::Runs(30),
+            "--column lat=NAME --column lon=NAME",
+        ),
         case("r in deg/s read as rad/s", scaled("r", 57.295_78), "unit_error", Channel::R, Where::Runs(30), "`unit`"),
         case(
             "u and v in knots read as m/s",

@@ -128,6 +128,8 @@ pub const COHERENT: f64 = 0.9;
 pub const APART: f64 = 3.0 * std::f64::consts::PI / 180.0;
 /// Gains further than this from 1 are worth a look.
 pub const CALIBRATED: f64 = 0.1;
+/// No calibration is off by this many times, nor its reciprocal: it is a unit.
+pub const NO_CALIBRATION: f64 = 20.0;
 /// Track and velocity along the earth's axes: coherence of the velocity that is not turned by the heading at least this,
 pub const UNTURNED: f64 = 0.97;
 /// and of the one that is turned at most this.

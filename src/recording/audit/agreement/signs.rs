@@ -7,8 +7,8 @@ use crate::recording::Channel;
 use crate::recording::audit::issue::{Issue, Severity};
 use crate::recording::audit::limits::{
     AGAINST, AGAINST_RUDDER, AGAINST_TURN, ASTERN_SHARE, ASTERN_SPEED, CALIBRATED, COHERENT, EXPLAINS, LEVER_SHARE,
-    LEVER_TURN, MIRROR_LEAVES, MIRRORED, NOT_MIRRORED, SIGN_EVIDENCE, SWAY_COHERENCE, SWAY_LEAVES, TRACK_ANGLES,
-    TRACK_ERRORS, TURNED, UNTURNED,
+    LEVER_TURN, MIRROR_LEAVES, MIRRORED, NO_CALIBRATION, NOT_MIRRORED, SIGN_EVIDENCE, SWAY_COHERENCE, SWAY_LEAVES,
+    TRACK_ANGLES, TRACK_ERRORS, TURNED, UNTURNED,
 };
 use crate::recording::audit::motion::clocks::Pair;
 use crate::recording::audit::motion::course::Course;
@@ -220,6 +220,12 @@ impl Track {
         if let Some(meaning) = known_gain(gain, turn, &SPEED_GAINS, next) {
             let text = format!("the track is {} times as fast as the velocity: {}", sig(gain, 3), meaning.text);
             push(Severity::Error, meaning.fault, Channel::U, text, meaning.next);
+            return true;
+        }
+        if !(1.0 / NO_CALIBRATION..NO_CALIBRATION).contains(&gain) {
+            let text = format!("the track is {} times as fast as the velocity, as no calibration is", sig(gain, 3));
+            let next = "a unit is another than declared: are x and y latitude and longitude in degrees (import them with `--column lat=NAME --column lon=NAME`)? Or correct `unit` of x and y, of u and v, or of t in a column map";
+            push(Severity::Error, "unit_error", Channel::U, text, next);
             return true;
         }
         if (ratio - 1.0).abs() > CALIBRATED + TRACK_ERRORS * ratio_error {
