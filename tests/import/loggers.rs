@@ -612,6 +612,40 @@ fn a_heading_that_counts_from_east_is_turned_whether_the_ship_turns_much_or_not(
 }
 
 #[test]
+fn a_pose_of_ros_has_x_to_the_east_and_what_turns_anticlockwise_is_turned() {
+    let text = |pose: &str, from_east: bool| {
+        let names = ["x", "y", "z", "w"].map(|axis| format!("/imu/data.orientation.{axis}")).join(",");
+        let others = "/imu/data.angular_velocity.z,/rudder/angle.data,rpm";
+        let mut text = format!("time,{pose}.position.x,{pose}.position.y,{names},{others}\n");
+        let rows = sailed(0.0);
+        let [lat, lon] = rows[0].place;
+        for row in &rows {
+            let north = (row.place[0] - lat).to_radians() * 6.359e6;
+            let east = (row.place[1] - lon).to_radians() * 6.386e6 * lat.to_radians().cos();
+            let psi = row.heading * DEGREE;
+            let (side, [x, y], yaw) = if from_east {
+                (-1.0, [east, north], std::f64::consts::FRAC_PI_2 - psi)
+            } else {
+                (1.0, [north, east], psi)
+            };
+            let attitude = format!("0,0,{:.7},{:.7}", (0.5 * yaw).sin(), (0.5 * yaw).cos());
+            let (rate, rudder) = (side * row.rate * DEGREE / 60.0, side * row.rudder * DEGREE);
+            writeln!(text, "{},{x:.3},{y:.3},{attitude},{rate:.6},{rudder:.5},120", iso(row.t)).unwrap();
+        }
+        text
+    };
+    let imported = read(&text("/odom.pose.pose", true));
+    assert!(off(&imported) < 0.5, "{}", off(&imported));
+    let (r, delta) = (channel(&imported, 0, Channel::R), channel(&imported, 0, Channel::Delta));
+    assert!(delta[45] > 0.1 && r[49] > 0.0, "{} {}", delta[45], r[49]);
+    assert!(notes(&imported).contains("x to the east and y to the north, as ROS has it"), "{}", notes(&imported));
+    assert!(!imported.unused.iter().any(|u| u.column.contains("orientation")), "{:?}", imported.unused);
+    // A frame that counts x to the north by its name.
+    let imported = read(&text("/odom_ned.pose.pose", false));
+    assert!(off(&imported) < 0.5 && !notes(&imported).contains("ROS"), "{} {}", off(&imported), notes(&imported));
+}
+
+#[test]
 fn a_table_with_a_row_for_each_value_is_told_with_what_makes_columns_of_it() {
     let text = log("", |_| String::new());
     let names: Vec<&str> = NAMES.split(',').collect();

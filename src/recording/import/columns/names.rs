@@ -211,6 +211,12 @@ pub fn reading(name: &str) -> Option<Reading> {
     }
 }
 
+/// Whether a name is that of a position in a pose of ROS.
+pub fn is_pose(name: &str) -> bool {
+    let parts = words(name);
+    found(&parts, "pose position").is_some() && !parts.iter().any(|p| p == "ned")
+}
+
 /// The words of a name without those of its unit.
 fn without_unit(mut parts: Vec<String>) -> Vec<String> {
     let ends = |end: &[&str]| parts.len() > end.len() && parts[parts.len() - end.len()..] == *end;
@@ -277,6 +283,8 @@ fn ruled_out(meaning: Meaning, parts: &[String], phrase: &Range<usize>) -> bool 
             // Depth under keel or transducer is no water depth.
             || (is(&[Depth]) && ["keel", "transducer", "below", "under"].contains(&word))
             || (is(&[U, V]) && word == "water")
+            // A pose in a frame that counts x to the north.
+            || (word == "ned" && parts[phrase.start] == "pose")
             || (meaning == Meaning::GroundSpeed && ["water", "current", "sound", "log", "wasser"].contains(&word))
     })
 }

@@ -4,6 +4,7 @@
 use super::agree::{heading, heading_unit};
 use super::choose::{Choices, Chosen, Unused};
 use super::evidence::{Given, Known, Verdict, direction, other, rotation, rudder, speed, yaw_rate};
+use super::names::is_pose;
 use crate::numerals::sig;
 use crate::recording::Channel;
 use crate::recording::import::error::ImportError;
@@ -68,8 +69,12 @@ pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportErr
     let get = |signals: &Signals, channel| signals.by.get(&Meaning::Channel(channel)).cloned();
     if let (Some(x), Some(y)) = (get(&signals, Channel::X), get(&signals, Channel::Y)) {
         known.track = Track::of(&x, &y);
-        known.axes_untold =
-            signals.origin.is_none() && !chosen.get(&Meaning::Channel(Channel::X)).is_some_and(|c| names_north(c));
+        let of_pose = chosen.get(&Meaning::Channel(Channel::X)).is_some_and(|c| c.iter().any(|c| is_pose(&c.name)));
+        if of_pose {
+            signals.notes.push(POSE.to_owned());
+        }
+        let told = of_pose || chosen.get(&Meaning::Channel(Channel::X)).is_some_and(|c| names_north(c));
+        known.axes_untold = signals.origin.is_none() && !told;
         let sway = chosen.get(&Meaning::Channel(Channel::V));
         known.sway = sway.map(|columns| Signal::new(columns, 1.0, 0.0, false).0);
     }
@@ -222,6 +227,10 @@ fn given(meaning: Meaning, columns: &[&Column], choices: &Choices) -> Result<Opt
     let unit = units.first().map(|u| (*u).clone());
     Ok(unit.and_then(|unit| quantity.factor(&unit).map(|factor| Given { unit, factor, by_user: false })))
 }
+
+/// What a pose of ROS is taken for.
+const POSE: &str = "the position of a pose counts x to the east and y to the north, as ROS has it (REP 103); `--column x=NAME --column y=NAME` \
+                    says which column is north (x) and which is east (y), if it does not";
 
 /// Whether a position is called north by its name.
 fn names_north(columns: &[&Column]) -> bool {

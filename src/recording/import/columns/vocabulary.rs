@@ -64,8 +64,9 @@ pub const PHRASES: &[(Meaning, &str)] = &[
          vitesse helice, giri, giri elica, giri motore, revoluciones, revoluciones helice, revoluciones por \
          minuto, vueltas helice",
     ),
-    (Channel(X), "northing, x0, pos x, position x, pos north"),
-    (Channel(Y), "easting, y0, pos y, position y, pos east"),
+    // A pose of ROS counts x to the east and y to the north (REP 103).
+    (Channel(X), "northing, x0, pos x, position x, pos north, pose position y"),
+    (Channel(Y), "easting, y0, pos y, position y, pos east, pose position x"),
     (Channel(U), "surge velocity, surge speed, surge vel, u, longitudinal velocity, longitudinal speed"),
     (Channel(V), "sway velocity, sway speed, sway vel, v, transverse velocity, transverse speed, lateral speed"),
     (Channel(WaveHeight), "wave height, hs, wellenhohe, hauteur vagues"),

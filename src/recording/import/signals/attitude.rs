@@ -12,15 +12,16 @@ const WORDS: [&str; 4] = ["quat", "orientation", "attitude", "rotation"];
 /// By how much a unit quaternion may miss its length: numbers of two decimals.
 const UNIT: f64 = 0.02;
 
-/// Adds the yaw of the first quaternion to a log that has no other heading.
+/// Puts the yaw of the first quaternion in its place in a log that has no other heading.
 pub fn add_heading(log: &mut Log) {
     let heading = Meaning::Channel(Channel::Psi);
     if log.columns.iter().any(|c| c.meaning.or_else(|| meaning(&c.name)) == Some(heading)) {
         return;
     }
     let found = log.columns.iter().find_map(|scalar| quaternion(scalar, &log.columns));
-    let yaw = found.and_then(yaw);
-    log.columns.extend(yaw);
+    let Some((parts, yaw)) = found.and_then(|parts| Some((parts.map(|c| c.name.clone()), yaw(parts)?))) else { return };
+    log.columns.retain(|c| !parts.contains(&c.name));
+    log.columns.push(yaw);
 }
 
 /// The components w, x, y and z, where a column is the first of them.
@@ -89,7 +90,7 @@ mod tests {
             let mut log = log(names, &yaws, 1.0);
             add_heading(&mut log);
             let found = log.columns.last().unwrap();
-            assert_eq!(found.meaning, Some(Meaning::Channel(Channel::Psi)), "{names:?}");
+            assert_eq!((found.meaning, log.columns.len()), (Some(Meaning::Channel(Channel::Psi)), 1), "{names:?}");
             assert!(found.v.iter().zip(&yaws).all(|(a, b)| (a - b).abs() < 1e-12), "{names:?}");
         }
     }
