@@ -612,6 +612,18 @@ fn a_heading_that_counts_from_east_is_turned_whether_the_ship_turns_much_or_not(
 }
 
 #[test]
+fn positions_in_degrees_under_the_names_of_axes_are_asked_for_with_the_columns_to_pass() {
+    let text = log("", |_| String::new()).replacen("lat,lon", "Y,X", 1);
+    let said = written(&text, &ImportSettings::default()).unwrap_err();
+    contains_all(&said, &["longitude and latitude", "--column lon=X --column lat=Y"]);
+    assert!(!said.contains("exchange the axes"), "{said}");
+    let columns = [("lon", "X"), ("lat", "Y")].map(|(quantity, name)| (quantity.to_owned(), name.to_owned()));
+    let choices = Choices { columns: columns.into_iter().collect(), ..Choices::default() };
+    let imported = written(&text, &ImportSettings { choices, ..ImportSettings::default() }).unwrap();
+    assert!(off(&imported) < 0.02, "{}", off(&imported));
+}
+
+#[test]
 fn a_pose_of_ros_has_x_to_the_east_and_what_turns_anticlockwise_is_turned() {
     let text = |pose: &str, from_east: bool| {
         let names = ["x", "y", "z", "w"].map(|axis| format!("/imu/data.orientation.{axis}")).join(",");

@@ -67,17 +67,7 @@ pub fn take(chosen: &Chosen<'_>, choices: &Choices) -> Result<Signals, ImportErr
         }
     }
     let get = |signals: &Signals, channel| signals.by.get(&Meaning::Channel(channel)).cloned();
-    if let (Some(x), Some(y)) = (get(&signals, Channel::X), get(&signals, Channel::Y)) {
-        known.track = Track::of(&x, &y);
-        let of_pose = chosen.get(&Meaning::Channel(Channel::X)).is_some_and(|c| c.iter().any(|c| is_pose(&c.name)));
-        if of_pose {
-            signals.notes.push(POSE.to_owned());
-        }
-        let told = of_pose || chosen.get(&Meaning::Channel(Channel::X)).is_some_and(|c| names_north(c));
-        known.axes_untold = signals.origin.is_none() && !told;
-        let sway = chosen.get(&Meaning::Channel(Channel::V));
-        known.sway = sway.map(|columns| Signal::new(columns, 1.0, 0.0, false).0);
-    }
+    known_track(&mut signals, chosen, &mut known);
     if choices.units.keys().all(|k| !["lat", "lon"].contains(&k.as_str()))
         && let Some(axes) = known.track.as_ref().and_then(|track| wrong_axes(track, chosen))
     {
@@ -228,13 +218,58 @@ fn given(meaning: Meaning, columns: &[&Column], choices: &Choices) -> Result<Opt
     Ok(unit.and_then(|unit| quantity.factor(&unit).map(|factor| Given { unit, factor, by_user: false })))
 }
 
+/// The track of the positions that were taken, whether its axes may be exchanged, and the sway velocity that would show it.
+fn known_track(signals: &mut Signals, chosen: &Chosen<'_>, known: &mut Known) {
+    let get = |channel| signals.by.get(&Meaning::Channel(channel));
+    let Some((x, y)) = get(Channel::X).zip(get(Channel::Y)) else { return };
+    let called = |is: fn(&str) -> bool| {
+        let columns = chosen.get(&Meaning::Channel(Channel::X));
+        signals.origin.is_none() && columns.is_some_and(|c| c.iter().any(|c| is(&c.name)))
+    };
+    let of_pose = called(is_pose);
+    known.axes_untold = signals.origin.is_none() && !of_pose && !called(is_north);
+    if known.axes_untold && are_degrees(x, y) {
+        signals.asked.push(in_degrees(chosen));
+        return;
+    }
+    known.track = Track::of(x, y);
+    let sway = chosen.get(&Meaning::Channel(Channel::V));
+    known.sway = sway.map(|columns| Signal::new(columns, 1.0, 0.0, false).0);
+    if of_pose {
+        signals.notes.push(POSE.to_owned());
+    }
+}
+
+/// No craft's track is this slow over a whole log \[m/s\]; in degrees the fastest is slower.
+const CRAWLS: f64 = 1e-3;
+
+/// Whether two axes of position, taken as metres, must be degrees: numbers that these have, of a track that a ship would take days for.
+fn are_degrees(x: &Signal, y: &Signal) -> bool {
+    let within = |s: &Signal| s.v.iter().all(|v| v.abs() <= 180.0) && s.v.iter().any(|v| v.abs() > 1.0);
+    let both: Vec<(f64, f64, f64)> = x.t.iter().zip(&x.v).zip(&y.v).map(|((t, x), y)| (*t, *x, *y)).collect();
+    let path: f64 = both.windows(2).map(|w| (w[1].1 - w[0].1).hypot(w[1].2 - w[0].2)).sum();
+    let time = both.last().zip(both.first()).map_or(0.0, |(b, a)| b.0 - a.0);
+    x.t == y.t && (within(x) || within(y)) && path > 0.0 && path < CRAWLS * time
+}
+
+/// The question for positions that must be degrees: X is the longitude, as programs for maps write it.
+fn in_degrees(chosen: &Chosen<'_>) -> String {
+    let name = |channel: Channel| {
+        chosen.get(&Meaning::Channel(channel)).and_then(|c| c.first()).map_or("NAME", |c| c.name.as_str())
+    };
+    let (x, y) = (name(Channel::X), name(Channel::Y));
+    format!(
+        "whether columns `{x}` and `{y}` are longitude and latitude: as metres they move less than a millimetre a second; pass `--column lon={x} --column lat={y}`, as programs for maps write them, or the other way round"
+    )
+}
+
 /// What a pose of ROS is taken for.
 const POSE: &str = "the position of a pose counts x to the east and y to the north, as ROS has it (REP 103); `--column x=NAME --column y=NAME` \
                     says which column is north (x) and which is east (y), if it does not";
 
 /// Whether a position is called north by its name.
-fn names_north(columns: &[&Column]) -> bool {
-    columns.iter().any(|c| c.name.to_lowercase().contains("north"))
+fn is_north(name: &str) -> bool {
+    name == "N" || name.to_lowercase().contains("north")
 }
 
 impl Signals {
