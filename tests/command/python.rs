@@ -110,7 +110,10 @@ fn python_reads_the_results_as_data_frames() {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/read_results.py");
     let has_pandas = Command::new("python3").args(["-c", "import pandas"]).output();
     if !has_pandas.is_ok_and(|o| o.status.success()) {
-        println!("skipped: python3 with pandas is not installed");
+        drop(std::io::Write::write_fmt(
+            &mut std::io::stderr(),
+            format_args!("skipped: python3 with pandas is not installed\n"),
+        ));
         return;
     }
     let study = results();

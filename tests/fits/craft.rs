@@ -100,7 +100,10 @@ fn folder(data: &str) -> Option<PathBuf> {
     if folder.is_dir() {
         return Some(folder);
     }
-    eprintln!("skipped: no recordings in {}", folder.display());
+    drop(std::io::Write::write_fmt(
+        &mut std::io::stderr(),
+        format_args!("skipped: no recordings in {}\n", folder.display()),
+    ));
     None
 }
 

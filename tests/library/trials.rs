@@ -19,7 +19,10 @@ fn tracks(word: &str) -> Option<Vec<(String, Track)>> {
     let given = std::env::var_os("TRIMTAB_DATA").map(PathBuf::from);
     let folder = given.unwrap_or_else(|| root.join("../shared/data")).join("kvlcc2_marin");
     if !folder.is_dir() {
-        println!("skipped: {} is absent; set TRIMTAB_DATA to run this test", folder.display());
+        drop(std::io::Write::write_fmt(
+            &mut std::io::stderr(),
+            format_args!("skipped: {} is absent; set TRIMTAB_DATA to run this test\n", folder.display()),
+        ));
         return None;
     }
     let mut study = Study::read(&root.join("experiments/studies/kvlcc2/study.toml")).unwrap();
@@ -74,7 +77,10 @@ fn found(study: &str, data: &str, terms: &[(&str, f64)]) -> Option<(Vec<Measured
     let given = std::env::var_os("TRIMTAB_DATA").map(PathBuf::from);
     let folder = given.unwrap_or_else(|| root.join("../shared/data")).join(data);
     if !folder.is_dir() {
-        println!("skipped: {} is absent; set TRIMTAB_DATA to run this test", folder.display());
+        drop(std::io::Write::write_fmt(
+            &mut std::io::stderr(),
+            format_args!("skipped: {} is absent; set TRIMTAB_DATA to run this test\n", folder.display()),
+        ));
         return None;
     }
     let mut study = Study::read(&root.join("experiments/studies").join(study).join("study.toml")).unwrap();

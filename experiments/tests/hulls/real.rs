@@ -20,7 +20,7 @@ fn present<T>(result: Result<T, RealError>) -> Option<T> {
     match result {
         Ok(value) => Some(value),
         Err(error) if is_absent(&error) => {
-            eprintln!("skipped: {error}");
+            drop(std::io::Write::write_fmt(&mut std::io::stderr(), format_args!("skipped: {error}\n")));
             None
         }
         Err(error) => panic!("{error}"),
