@@ -137,10 +137,7 @@ fn every_form_has_the_same_numbers_and_octave_finds_the_same_force() {
     let call = "run('ship.m'); f = ship.hull_force(4.0, -0.7, 0.012); printf('%.12e %.12e %.12e', f);";
     let mut octave = std::process::Command::new("octave-cli");
     match octave.args(["--eval", call]).current_dir(study.folder.path()).output() {
-        Err(_) => drop(std::io::Write::write_fmt(
-            &mut std::io::stderr(),
-            format_args!("skipped: octave-cli is not installed; the script was read, not run\n"),
-        )),
+        Err(_) => crate::support::skipped("octave-cli is not installed; the script was read, not run"),
         Ok(output) => {
             let text = String::from_utf8_lossy(&output.stdout).into_owned();
             let f: Vec<f64> = text.split_whitespace().map(|x| x.parse().unwrap()).collect();

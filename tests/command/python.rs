@@ -110,10 +110,7 @@ fn python_reads_the_results_as_data_frames() {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/read_results.py");
     let has_pandas = Command::new("python3").args(["-c", "import pandas"]).output();
     if !has_pandas.is_ok_and(|o| o.status.success()) {
-        drop(std::io::Write::write_fmt(
-            &mut std::io::stderr(),
-            format_args!("skipped: python3 with pandas is not installed\n"),
-        ));
+        crate::support::skipped("python3 with pandas is not installed");
         return;
     }
     let study = results();

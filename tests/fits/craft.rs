@@ -100,10 +100,7 @@ fn folder(data: &str) -> Option<PathBuf> {
     if folder.is_dir() {
         return Some(folder);
     }
-    drop(std::io::Write::write_fmt(
-        &mut std::io::stderr(),
-        format_args!("skipped: no recordings in {}\n", folder.display()),
-    ));
+    crate::support::skipped(&format!("no recordings in {}", folder.display()));
     None
 }
 

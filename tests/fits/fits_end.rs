@@ -75,10 +75,7 @@ fn a_fit_of_a_ship_known_by_its_particulars_ends_at_the_lowest_known_cost() {
     let given = std::env::var_os("TRIMTAB_DATA").map(PathBuf::from);
     let folder = given.unwrap_or_else(|| root.join("../shared/data")).join("tug");
     if !folder.is_dir() {
-        drop(std::io::Write::write_fmt(
-            &mut std::io::stderr(),
-            format_args!("skipped: {} is absent; set TRIMTAB_DATA to run this test\n", folder.display()),
-        ));
+        crate::support::skipped(&format!("{} is absent; set TRIMTAB_DATA to run this test", folder.display()));
         return;
     }
     let file = |name: &str| folder.join(name).to_string_lossy().into_owned();

@@ -992,10 +992,7 @@ fn inputs_that_once_failed_are_right() {
             seen += 1;
             check(&import(&[folder.join(file)], &ImportSettings::default()).unwrap());
         }
-        None => drop(std::io::Write::write_fmt(
-            &mut std::io::stderr(),
-            format_args!("skipped: no folder {number}* in {}\n", cases.display()),
-        )),
+        None => crate::support::skipped(&format!("no folder {number}* in {}", cases.display())),
     };
     each("02", "sail.csv", &|i| assert_eq!(taken(i, "sog"), "Ext_SOG"));
     each("04", "dt.csv", &|i| assert_eq!(taken(i, "delta"), "rudder"));
@@ -1015,10 +1012,7 @@ fn inputs_that_once_failed_are_right() {
     each("23", "wind.csv", &|i| assert!((from(i) + 100.0).abs() < 1.0, "{}", from(i)));
     each("23", "both.csv", &|i| assert!((from(i) + 100.0).abs() < 1.0, "{}", from(i)));
     if seen == 0 {
-        drop(std::io::Write::write_fmt(
-            &mut std::io::stderr(),
-            format_args!("skipped: {} is not there\n", cases.display()),
-        ));
+        crate::support::skipped(&format!("{} is not there", cases.display()));
     }
 }
 

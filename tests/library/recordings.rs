@@ -12,10 +12,7 @@ fn study(name: &str, data: &str) -> Option<Study> {
     let given = std::env::var_os("TRIMTAB_DATA").map(PathBuf::from);
     let folder = given.unwrap_or_else(|| root.join("../shared/data")).join(data);
     if !folder.is_dir() {
-        drop(std::io::Write::write_fmt(
-            &mut std::io::stderr(),
-            format_args!("skipped: {} is absent; set TRIMTAB_DATA to run this test\n", folder.display()),
-        ));
+        crate::support::skipped(&format!("{} is absent; set TRIMTAB_DATA to run this test", folder.display()));
         return None;
     }
     Some(Study::read(&root.join("experiments/studies").join(name).join("study.toml")).unwrap())

@@ -19,10 +19,7 @@ fn tracks(word: &str) -> Option<Vec<(String, Track)>> {
     let given = std::env::var_os("TRIMTAB_DATA").map(PathBuf::from);
     let folder = given.unwrap_or_else(|| root.join("../shared/data")).join("kvlcc2_marin");
     if !folder.is_dir() {
-        drop(std::io::Write::write_fmt(
-            &mut std::io::stderr(),
-            format_args!("skipped: {} is absent; set TRIMTAB_DATA to run this test\n", folder.display()),
-        ));
+        crate::support::skipped(&format!("{} is absent; set TRIMTAB_DATA to run this test", folder.display()));
         return None;
     }
     let mut study = Study::read(&root.join("experiments/studies/kvlcc2/study.toml")).unwrap();
@@ -77,10 +74,7 @@ fn found(study: &str, data: &str, terms: &[(&str, f64)]) -> Option<(Vec<Measured
     let given = std::env::var_os("TRIMTAB_DATA").map(PathBuf::from);
     let folder = given.unwrap_or_else(|| root.join("../shared/data")).join(data);
     if !folder.is_dir() {
-        drop(std::io::Write::write_fmt(
-            &mut std::io::stderr(),
-            format_args!("skipped: {} is absent; set TRIMTAB_DATA to run this test\n", folder.display()),
-        ));
+        crate::support::skipped(&format!("{} is absent; set TRIMTAB_DATA to run this test", folder.display()));
         return None;
     }
     let mut study = Study::read(&root.join("experiments/studies").join(study).join("study.toml")).unwrap();
