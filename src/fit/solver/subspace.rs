@@ -57,8 +57,9 @@ impl Inverse {
 
     /// Whether each variable is free of directions that are not determined.
     pub fn determined(&self) -> Vec<bool> {
-        let loose = &self.directions[self.rank..];
-        (0..self.matrix.nrows()).map(|i| loose.iter().all(|(_, d)| d[i].abs() < 1e-3)).collect()
+        let n = self.matrix.nrows();
+        let unit = |i: usize| DVector::from_fn(n, |j, _| f64::from(u8::from(i == j)));
+        (0..n).map(|i| !self.loose(&unit(i))).collect()
     }
 }
 

@@ -164,6 +164,13 @@ pub const UNITS: &[Unit] = &[
     unit(Quantity::Moment, &["kN m", "kNm", "kN*m"], 1e3),
 ];
 
+impl Unit {
+    /// Its name in the plural, the last of the spellings: `milliseconds`.
+    pub(crate) fn plural(&self) -> &'static str {
+        self.spellings[self.spellings.len() - 1]
+    }
+}
+
 impl Quantity {
     /// The units of this quantity, SI first.
     pub fn units(self) -> impl Iterator<Item = &'static Unit> {

@@ -183,12 +183,13 @@ fn together(recordings: &[ImportedRecording], logs: &[Log], driven: &Driven, ste
         Err(ImportError::File { path, message })
     };
     if step > SLOW {
-        let finer = ["ms", "us", "ns"].into_iter().filter_map(|unit| Some((unit, Quantity::Time.factor(unit)? * step)));
-        let mut flags = finer.filter(|(_, step)| *step <= 0.2 * SLOW).map(|(unit, step)| {
+        let finer = Quantity::Time.units().filter(|unit| unit.factor < 1.0 && unit.factor * step <= 0.2 * SLOW);
+        let mut flags = finer.map(|unit| {
             format!(
-                "if it counts {}, so that they are {} s apart, pass `--unit t={unit}`",
-                in_words(unit),
-                sig(step, 3)
+                "if it counts {}, so that they are {} s apart, pass `--unit t={}`",
+                unit.plural(),
+                sig(unit.factor * step, 3),
+                unit.spellings[0]
             )
         });
         let flag = flags.next().filter(|_| own).unwrap_or_else(|| "rows a few seconds apart are needed".to_owned());
@@ -202,12 +203,6 @@ fn together(recordings: &[ImportedRecording], logs: &[Log], driven: &Driven, ste
         None if recordings.is_empty() => fail("position and heading are never recorded together for ten rows: drop-outs of one end where those of the other begin; leave one of the columns out, or correct the times".to_owned()),
         None => Ok(()),
     }
-}
-
-/// The name of a unit, in the plural.
-fn in_words(unit: &str) -> &str {
-    let all = Quantity::Time.units().find(|u| u.spellings.contains(&unit));
-    all.and_then(|u| u.spellings.last()).copied().unwrap_or(unit)
 }
 
 /// Puts a heading that a logger interpolated across north on the short way round, before velocities are turned by it.

@@ -21,7 +21,7 @@ pub fn clock(name: &str, times: f64) -> Option<String> {
         Quantity::Time.units().find(|unit| unit.factor != 1.0 && near(times / factor, unit.factor))
     };
     let (speed, unit) = ["kn", "m/s", "km/h"].into_iter().find_map(|speed| Some((speed, of(speed)?)))?;
-    let (words, flag) = (unit.spellings[unit.spellings.len() - 1], unit.spellings[0]);
+    let (words, flag) = (unit.plural(), unit.spellings[0]);
     Some(format!(
         "the track goes with column `{name}` in {speed} where the time counts {words}: pass `--unit t={flag}`"
     ))
@@ -32,11 +32,7 @@ pub fn advice(times: f64) -> String {
     let near = |factor: f64| near(times, factor);
     let unit = Quantity::Time.units().find(|unit| unit.factor != 1.0 && near(unit.factor));
     match unit {
-        Some(unit) => format!(
-            "the time counts {}, it seems: pass `--unit t={}`",
-            unit.spellings[unit.spellings.len() - 1],
-            unit.spellings[0]
-        ),
+        Some(unit) => format!("the time counts {}, it seems: pass `--unit t={}`", unit.plural(), unit.spellings[0]),
         None if IN_RADIANS.contains(&(times.abs() / 1f64.to_radians())) => {
             "latitude and longitude are in radians, it seems: pass `--unit lat=rad --unit lon=rad`".to_owned()
         }
