@@ -243,12 +243,17 @@ fn known_track(signals: &mut Signals, chosen: &Chosen<'_>, known: &mut Known) {
 /// No craft's track is this slow over a whole log \[m/s\]; in degrees the fastest is slower.
 const CRAWLS: f64 = 1e-3;
 
+/// Sampling steps from which on a pause is no part of a track.
+const LONGEST_STEP: f64 = 10.0;
+
 /// Whether two axes of position, taken as metres, must be degrees: numbers that these have, of a track that a ship would take days for.
 fn are_degrees(x: &Signal, y: &Signal) -> bool {
     let within = |s: &Signal| s.v.iter().all(|v| v.abs() <= 180.0) && s.v.iter().any(|v| v.abs() > 1.0);
     let both: Vec<(f64, f64, f64)> = x.t.iter().zip(&x.v).zip(&y.v).map(|((t, x), y)| (*t, *x, *y)).collect();
-    let path: f64 = both.windows(2).map(|w| (w[1].1 - w[0].1).hypot(w[1].2 - w[0].2)).sum();
-    let time = both.last().zip(both.first()).map_or(0.0, |(b, a)| b.0 - a.0);
+    // What lies between the files of a log is no part of its track.
+    let steps = || both.windows(2).filter(|w| w[1].0 - w[0].0 <= LONGEST_STEP * x.step);
+    let path: f64 = steps().map(|w| (w[1].1 - w[0].1).hypot(w[1].2 - w[0].2)).sum();
+    let time: f64 = steps().map(|w| w[1].0 - w[0].0).sum();
     x.t == y.t && (within(x) || within(y)) && path > 0.0 && path < CRAWLS * time
 }
 
@@ -460,5 +465,20 @@ impl Signals {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pause_between_two_files_does_not_make_metres_degrees() {
+        let signal = |speed: f64| {
+            let t: Vec<f64> = (0..200).map(|k| f64::from(k) + if k < 100 { 0.0 } else { 1e6 }).collect();
+            Signal { v: (0..200).map(|k| 20.0 + speed * f64::from(k % 100)).collect(), t, step: 1.0, jitter: 0.0 }
+        };
+        assert!(!are_degrees(&signal(0.8), &signal(0.1)));
+        assert!(are_degrees(&signal(5e-5), &signal(1e-5)));
     }
 }
