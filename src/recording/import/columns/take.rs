@@ -243,15 +243,13 @@ fn known_track(signals: &mut Signals, chosen: &Chosen<'_>, known: &mut Known) {
 /// No craft's track is this slow over a whole log \[m/s\]; in degrees the fastest is slower.
 const CRAWLS: f64 = 1e-3;
 
-/// Sampling steps from which on a pause is no part of a track.
-const LONGEST_STEP: f64 = 10.0;
-
 /// Whether two axes of position, taken as metres, must be degrees: numbers that these have, of a track that a ship would take days for.
 fn are_degrees(x: &Signal, y: &Signal) -> bool {
     let within = |s: &Signal| s.v.iter().all(|v| v.abs() <= 180.0) && s.v.iter().any(|v| v.abs() > 1.0);
     let both: Vec<(f64, f64, f64)> = x.t.iter().zip(&x.v).zip(&y.v).map(|((t, x), y)| (*t, *x, *y)).collect();
     // What lies between the files of a log is no part of its track.
-    let steps = || both.windows(2).filter(|w| w[1].0 - w[0].0 <= LONGEST_STEP * x.step);
+    let longest = x.longest_step();
+    let steps = || both.windows(2).filter(|w| w[1].0 - w[0].0 <= longest);
     let path: f64 = steps().map(|w| (w[1].1 - w[0].1).hypot(w[1].2 - w[0].2)).sum();
     let time: f64 = steps().map(|w| w[1].0 - w[0].0).sum();
     x.t == y.t && (within(x) || within(y)) && path > 0.0 && path < CRAWLS * time
