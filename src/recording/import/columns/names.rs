@@ -3,8 +3,8 @@
 
 use super::vocabulary::{
     BESIDE_COUNTS, BESIDE_SHIPS, CALENDAR, CHANGES, CLOCKS, COUNTS, DRIVES, FROM_BOW, FROM_NORTH, LABVIEW, MAGNETIC,
-    MOVES, NEUTRAL, ORDERS, PHRASES, RELATIVE, SHIPS, SINCE, SPEEDS, VAGUE, WIND, WIND_DIRECTIONS, WIND_SPEEDS, is_on,
-    phrases,
+    MOVES, NEUTRAL, ORDERS, PHRASES, RELATIVE, SHIPS, SINCE, SPEEDS, VAGUE, WATER, WIND, WIND_DIRECTIONS, WIND_SPEEDS,
+    is_on, phrases,
 };
 use crate::recording::file::unit::scaled;
 use crate::recording::import::signals::log::Meaning;
@@ -26,22 +26,31 @@ fn plain(c: char) -> char {
 }
 
 /// Words of a name, in lower case and without accents: `Rudder_Angle` is `rudder angle`.
-pub(super) fn words(name: &str) -> Vec<String> {
+pub(in crate::recording::import) fn words(name: &str) -> Vec<String> {
     let mut spaced = String::new();
     let mut last_lower = false;
-    for c in name.chars() {
+    // `Heading A/P`: the autopilot's.
+    for c in name.replace("A/P", "AP").chars() {
         if c.is_uppercase() && last_lower {
             spaced.push(' ');
         }
         last_lower = c.is_lowercase();
-        spaced.push(if c.is_alphanumeric() { c } else { ' ' });
+        match c {
+            '%' => spaced.push_str(" pct "),
+            c => spaced.push(if c.is_alphanumeric() { c } else { ' ' }),
+        }
     }
     let plain: String = spaced.to_lowercase().chars().map(plain).collect();
     plain.split_whitespace().map(str::to_owned).collect()
 }
 
 /// Spellings of units at the end of a name, as in `sog_kn`, and the unit.
-const ENDINGS: [(&[&str], &str); 38] = [
+const ENDINGS: [(&[&str], &str); 43] = [
+    (&["pct"], "%"),
+    (&["percent"], "%"),
+    (&["norm"], "-"),
+    (&["normalised"], "-"),
+    (&["normalized"], "-"),
     (&["ms"], "ms"),
     (&["deg", "per", "min"], "deg/min"),
     (&["deg", "min"], "deg/min"),
@@ -193,7 +202,8 @@ pub fn reading(name: &str) -> Option<Reading> {
     for (meaning, list, weight) in each {
         for phrase in phrases(list) {
             let Some(at) = found(&parts, phrase).filter(|at| !ruled_out(meaning, &parts, at)) else { continue };
-            let of = |i: usize| at.contains(&i);
+            // `Heading gyro`: another word of the same quantity leaves nothing unexplained.
+            let of = |i: usize| at.contains(&i) || is_on(list, &parts[i]);
             let explained = weight * share_by_place(&parts, of);
             if best.is_none_or(|best| explained > best.explained) {
                 best = Some(Reading { meaning, explained });
@@ -285,7 +295,7 @@ fn ruled_out(meaning: Meaning, parts: &[String], phrase: &Range<usize>) -> bool 
             || (is(&[U, V]) && word == "water")
             // A pose in a frame that counts x to the north.
             || (word == "ned" && parts[phrase.start] == "pose")
-            || (meaning == Meaning::GroundSpeed && ["water", "current", "sound", "log", "wasser"].contains(&word))
+            || (meaning == Meaning::GroundSpeed && (is_on(WATER, word) || word == "sound"))
     })
 }
 
@@ -298,6 +308,10 @@ fn is_wind_word(word: &str) -> bool {
 /// bow. `None` where it is not of the wind, `Some(None)` where it is something else of it.
 fn wind(parts: &[String]) -> Option<Option<Meaning>> {
     let any = |list: &'static str| parts.iter().any(|p| is_on(list, p));
+    // `Speed TW` is through water, `TWS` a wind.
+    if found(parts, "speed tw").is_some() {
+        return None;
+    }
     let [speeds, directions] = [any(WIND_SPEEDS), any(WIND_DIRECTIONS)];
     // Two letters alone are no wind: `AW_speed` is one, `AW` may be anything.
     let said = parts.iter().any(|p| is_on(WIND, p) && p.len() > 2)
@@ -476,6 +490,16 @@ mod tests {
             ("North [m]", "x", Some("m")),
             ("δ <deg>", "delta", Some("deg")),
             ("speed_through_water_kn", "u_water", Some("kn")),
+            ("Fart gjennom vann [kn]", "u_water", Some("kn")),
+            ("Fart genom vatten (kn)", "u_water", Some("kn")),
+            ("Speed (W) [kn]", "u_water", Some("kn")),
+            ("Speed TW [kn]", "u_water", Some("kn")),
+            ("EM log [kn]", "u_water", Some("kn")),
+            ("Log [kn]", "u_water", Some("kn")),
+            ("Speed (G) [kn]", "sog", Some("kn")),
+            ("Rudder %", "delta", Some("%")),
+            ("RPM_pct", "n", Some("%")),
+            ("rudder_norm", "delta", Some("-")),
         ];
         for (field, expected, unit) in cases {
             let (name, found) = name_and_unit(field);
@@ -501,6 +525,7 @@ mod tests {
         for field in [
             "Depth below keel",
             "Heading setpoint",
+            "Heading A/P",
             "engine load",
             "UTC",
             "Rudder rate",

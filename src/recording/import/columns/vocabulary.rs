@@ -15,7 +15,8 @@ pub const PHRASES: &[(Meaning, &str)] = &[
         "u water, stw, stw long, stw longitudinal, speed through water, speed through the water, speed in \
          water, water speed, water speed ahead, long water speed, longitudinal water speed, log speed, speed \
          log, fdw, fahrt durchs wasser, fahrt durch wasser, vitesse surface, velocita in acqua, velocidad en \
-         el agua, velocidad en agua",
+         el agua, velocidad en agua, fart gjennom vann, fart gjennom vannet, fart genom vatten, fart genom vattnet, fart \
+         gennem vand, fart gennem vandet, snelheid door het water, speed w, spd w, speed tw, em log, doppler log",
     ),
     (
         Channel(VWater),
@@ -47,7 +48,7 @@ pub const PHRASES: &[(Meaning, &str)] = &[
     ),
     (
         GroundSpeed,
-        "sog, speed over ground, ground speed, groundspeed, gps speed, speed gps, gnss speed, speed gnss, speed made good, fahrt uber grund, \
+        "sog, speed over ground, ground speed, groundspeed, speed g, spd g, gps speed, speed gps, gnss speed, speed gnss, speed made good, fahrt uber grund, \
          fahrt ueber grund, fug, fu g, fart over grunn, vitesse fond, vitesse sur le fond, velocita al suolo, \
          velocita sul fondo, velocidad sobre el fondo, velocidad sobre fondo",
     ),
@@ -80,6 +81,7 @@ pub const PHRASES: &[(Meaning, &str)] = &[
 /// Phrases that name the same less surely: another column may be meant.
 pub const VAGUE: &[(Meaning, &str)] = &[
     (GroundSpeed, "speed, spd, geschwindigkeit, fahrt, snelheid, vitesse, velocita, velocidad, fart"),
+    (Channel(UWater), "log"),
     (Course, "kurs, route"),
     (Channel(X), "north, x"),
     (Channel(Y), "east, y"),
@@ -131,6 +133,9 @@ pub const WIND_DIRECTIONS: &str = "windrichtung, winddirection, winddir, vindret
 /// Words of a wind that a moving ship feels.
 pub const RELATIVE: &str =
     "apparent, relative, rel, aw, aws, awa, awd, scheinbar, scheinbare, scheinbarer, apparente, aparente";
+/// Words of the water, through which a speed is none over ground.
+pub const WATER: &str =
+    "water, current, log, wasser, vann, vannet, vatten, vattnet, vand, vandet, eau, acqua, agua, w, tw";
 /// Words of a speed.
 pub const SPEEDS: &str = "speed, spd, velocity, vel, tws, aws, geschwindigkeit, vitesse, velocita, velocidad";
 /// Words of a direction that counts from north.
@@ -155,7 +160,8 @@ pub const COUNTS: [(&str, &str); 2] = [("d", "doy, yearday, julian, jday"), ("h"
 /// Words that may stand beside them.
 pub const BESIDE_COUNTS: &str = "day, of, the, year, decimal, utc, time, number, no";
 /// Words of a time since something: of the start of a GPS week, of the days of MATLAB.
-pub const SINCE: &str = "tow, datenum, stamp, elapsed, seconds, secs, sec, millis, secondes, segundos, secondi";
+pub const SINCE: &str =
+    "tow, datenum, stamp, elapsed, filetime, ticks, seconds, secs, sec, millis, secondes, segundos, secondi";
 /// The name that LabVIEW gives the times of its rows.
 pub const LABVIEW: &str = "x value";
 /// Words of a column that identifies the ship of each row.

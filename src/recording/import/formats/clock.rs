@@ -100,9 +100,14 @@ impl Half {
     }
 }
 
+/// Whether a text is a date and time with the day or the month first.
+pub fn is_date_time(text: &str) -> bool {
+    [DateOrder::DayFirst, DateOrder::MonthFirst].iter().any(|order| date_time(text, *order).is_some())
+}
+
 /// Whether a text is a date without a time of day.
 pub fn is_date_alone(text: &str) -> bool {
-    text.len() <= 12 && !text.contains(':') && date_time(text, DateOrder::DayFirst).is_some()
+    text.len() <= 12 && !text.contains(':') && is_date_time(text)
 }
 
 fn seconds(stamp: Timestamp) -> f64 {
@@ -316,19 +321,36 @@ pub struct NumericTime {
 /// Steps of a log are no longer than this \[s\].
 const LONGEST_STEP: f64 = 3600.0;
 
+/// Seconds since 1970 of the dates from 2000 to 2050.
+pub const THIS_CENTURY: std::ops::Range<f64> = 946_684_800.0..2_524_608_000.0;
+/// Epochs beside that of 1970, by which numbers are dates of this century: the seconds of one, the number of 1970, and its name. LabVIEW counts
+/// from 1904, the FILETIME of Windows from 1601, the ticks of .NET from the year 1, both in tenths of a microsecond.
+const EPOCHS: [(f64, f64, &str); 3] = [
+    (1.0, 2_082_844_800.0, "seconds since 1904, as LabVIEW counts them"),
+    (1e-7, 116_444_736e9, "tenths of a microsecond since 1601, a FILETIME of Windows"),
+    (1e-7, 621_355_968e9, "tenths of a microsecond since the year 1, ticks of .NET"),
+];
+
 /// What a column of numbers counts, by its size: epochs are unlike any other number.
 pub fn numeric_time(values: &[f64], unit: Option<f64>) -> NumericTime {
     let mut finite: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
     let middle = finite.len() / 2;
     let typical = if finite.is_empty() { 0.0 } else { *finite.select_nth_unstable_by(middle, f64::total_cmp).1 };
     let time = |clock, factor, zero, words| NumericTime { clock, factor, zero, words };
+    let step = median(values.windows(2).map(|v| v[1] - v[0]).filter(|s| *s > 0.0).collect()).unwrap_or(0.0);
+    let other = |(factor, zero, _): &&(f64, f64, &str)| {
+        let usual = unit.is_none_or(|unit| (unit / factor - 1.0).abs() < 1e-9) && step * factor <= LONGEST_STEP;
+        usual && THIS_CENTURY.contains(&((typical - zero) * factor))
+    };
+    if let Some((factor, zero, words)) = EPOCHS.iter().find(other) {
+        return time(Clock::Utc, *factor, *zero, words);
+    }
     // A unit that takes the numbers to a date since 1973 is that of an epoch.
     if let Some(unit) = unit.filter(|unit| (1e8..1e11).contains(&(typical * unit))) {
         return time(Clock::Utc, unit, 0.0, "time since 1970");
     }
     let own = unit.filter(|unit| typical * unit < 1e8);
     // Numbers that would be an epoch by their size and whose steps would then be hours count something finer from a start of their own.
-    let step = median(values.windows(2).map(|v| v[1] - v[0]).filter(|s| *s > 0.0).collect()).unwrap_or(0.0);
     let epoch = |v: f64, above: f64, factor: f64| v > above && step * factor <= LONGEST_STEP;
     match typical {
         _ if own.is_some() => time(Clock::Own, own.unwrap_or(1.0), 0.0, "time from a start of its own"),
@@ -409,6 +431,15 @@ pub fn moment(text: &str) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn epochs_of_other_programs_are_dates_of_this_century() {
+        let moment = 1_761_125_400.0;
+        for (number, step) in [(3_843_970_200.0, 1.0), (134_055_990_000_000_000.0, 1e7), (638_967_222e9, 1e7)] {
+            let NumericTime { clock, factor, zero, words } = numeric_time(&[number, number + step], None);
+            assert!(clock == Clock::Utc && ((number - zero) * factor - moment).abs() < 1e-3, "{words}");
+        }
+    }
 
     #[test]
     fn one_instant_written_in_many_ways_is_one_number() {

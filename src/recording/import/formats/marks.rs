@@ -2,9 +2,9 @@
 //! They stand in the field of the number, before or after it, or in a column of their own.
 
 use super::layout::number;
-use crate::recording::Channel;
 use crate::recording::import::columns::names::is_unit;
 use crate::recording::import::signals::log::Meaning;
+use crate::recording::{Channel, Quantity};
 use std::collections::BTreeSet;
 
 /// Letters that say which way a number counts: those of positive numbers and those of negative ones.
@@ -32,8 +32,15 @@ const STARBOARD_PORT: Sides = Sides {
     ],
     negative: &["p", "ps", "port", "l", "left", "bb", "backbord", "babord", "bâbord", "babor", "sx", "sinistra"],
 };
+/// The same in Slavic languages: `P` is right, as in Polish prawo, Russian and Croatian pravo.
+const RIGHT_LEFT: Sides = Sides {
+    positive: &["p", "prawo", "prawa", "pravo", "prava", "prb"],
+    negative: &["l", "lewo", "lewa", "levo", "leva", "lb"],
+};
 const AHEAD_ASTERN: Sides =
-    Sides { positive: &["ah", "ahead", "fwd", "forward"], negative: &["as", "ast", "astern", "rev", "reverse"] };
+    Sides { positive: &["ah", "ahd", "ahead", "fwd", "forward"], negative: &["as", "ast", "astern", "rev", "reverse"] };
+/// Words of a telegraph that leave the sense as it was.
+const STOPPED: [&str; 4] = ["stop", "stopped", "standby", "fwe"];
 
 /// Words beside a heading that change nothing.
 const TRUE: [&str; 2] = ["t", "true"];
@@ -41,15 +48,20 @@ const TRUE: [&str; 2] = ["t", "true"];
 const MAGNETIC: [&str; 3] = ["m", "mag", "magnetic"];
 
 impl Sides {
-    /// Those of a quantity; `S` is south of a latitude and starboard of a rudder.
-    fn of(meaning: Option<Meaning>) -> Option<&'static Self> {
-        match meaning? {
-            Meaning::Latitude => Some(&NORTH_SOUTH),
-            Meaning::Longitude => Some(&EAST_WEST),
-            Meaning::Channel(Channel::Delta | Channel::DeltaOrder | Channel::Thruster) => Some(&STARBOARD_PORT),
-            Meaning::Channel(Channel::N | Channel::NOrder) => Some(&AHEAD_ASTERN),
-            _ => None,
-        }
+    /// Those of a quantity; `S` is south of a latitude and starboard of a rudder. Of two alphabets the one is taken in which the marks are of
+    /// both sides: `L` and `P` are left and right, where both would be port otherwise.
+    fn of<'a>(meaning: Option<Meaning>, marks: impl Iterator<Item = &'a str> + Clone) -> Option<&'static Self> {
+        let all: &[&'static Self] = match meaning? {
+            Meaning::Latitude => &[&NORTH_SOUTH],
+            Meaning::Longitude => &[&EAST_WEST],
+            Meaning::Channel(Channel::Delta | Channel::DeltaOrder | Channel::Thruster) => {
+                &[&STARBOARD_PORT, &RIGHT_LEFT]
+            }
+            Meaning::Channel(Channel::N | Channel::NOrder) => &[&AHEAD_ASTERN],
+            _ => return None,
+        };
+        let both = |sides: &&Self| [1.0, -1.0].iter().all(|s| marks.clone().any(|mark| sides.sign(mark) == Some(*s)));
+        all.iter().copied().find(both).or_else(|| all.first().copied())
     }
 
     fn sign(&self, letters: &str) -> Option<f64> {
@@ -72,7 +84,8 @@ impl Marks {
     pub fn of<'a>(fields: impl Iterator<Item = &'a str>, meaning: Option<Meaning>, decimal_comma: bool) -> Self {
         let parts = fields.filter_map(|f| marked(f, decimal_comma));
         let found: BTreeSet<&str> = parts.map(|(_, mark)| mark).filter(|mark| !mark.is_empty()).collect();
-        let sides = Sides::of(meaning).filter(|sides| found.iter().any(|mark| sides.sign(mark).is_some()));
+        let sides = Sides::of(meaning, found.iter().copied())
+            .filter(|sides| found.iter().any(|mark| sides.sign(mark).is_some()));
         let counts = matches!(meaning, Some(Meaning::Course | Meaning::Channel(Channel::Psi)));
         let magnetic = counts && !found.is_empty() && found.iter().all(|mark| among(&MAGNETIC, mark));
         let mut units = found.iter().filter(|mark| is_unit(mark) && !magnetic);
@@ -101,11 +114,19 @@ fn among(words: &[&str], mark: &str) -> bool {
 }
 
 /// The signs that a column of letters alone gives to the numbers of another with this meaning, NaN where it has none; `None` where it
-/// contains anything else.
-pub fn signs<'a>(fields: impl Iterator<Item = &'a str>, meaning: Option<Meaning>) -> Option<Vec<f64>> {
-    let sides = Sides::of(meaning)?;
+/// contains anything else. A telegraph says `HALF ASTERN`, and keeps the sense where it says `STOP`.
+pub fn signs<'a>(fields: impl Iterator<Item = &'a str> + Clone, meaning: Option<Meaning>) -> Option<Vec<f64>> {
+    let sides = Sides::of(meaning, fields.clone().map(str::trim))?;
+    let telegraph = meaning.is_some_and(|m| m.quantity() == Quantity::Rotation);
+    let mut last = 1.0;
+    let mut sign = |field: &'a str| {
+        let words = || field.split(|c: char| !c.is_alphanumeric());
+        let order = || words().find_map(|w| sides.sign(w)).or(words().any(|w| among(&STOPPED, w)).then_some(last));
+        last = sides.sign(field).or_else(|| telegraph.then(order).flatten())?;
+        Some(last)
+    };
     let signs: Option<Vec<f64>> =
-        fields.map(|f| if number(f, true).is_some() { Some(f64::NAN) } else { sides.sign(f.trim()) }).collect();
+        fields.map(|f| if number(f, true).is_some() { Some(f64::NAN) } else { sign(f.trim()) }).collect();
     signs.filter(|signs| signs.iter().any(|s| s.is_finite()))
 }
 
@@ -206,6 +227,12 @@ mod tests {
         assert_eq!(read(&["Bb 0.0", "Bb 3.5", "Stb 2.0"], rudder), [Some(0.0), Some(-3.5), Some(2.0)]);
         assert_eq!(read(&["3,5 Bâbord", "tribord 2"], rudder)[1], Some(2.0));
         assert_eq!(read(&["P 10", "S 5"], Meaning::Latitude), [None, Some(-5.0)]);
+        // Left and right in Polish, where both would be port.
+        assert_eq!(read(&["L 10", "2.5P"], rudder), [Some(-10.0), Some(2.5)]);
+        assert_eq!(signs(["L", "P"].into_iter(), Some(rudder)), Some(vec![-1.0, 1.0]));
+        let telegraph = ["STOP", "HALF AHEAD", "Stop", "D. SLOW ASTERN", "STOP"];
+        let senses = signs(telegraph.into_iter(), Some(Meaning::Channel(Channel::N)));
+        assert_eq!(senses, Some(vec![1.0, 1.0, 1.0, -1.0, -1.0]));
         assert_eq!(signs(["P", "Stbd", ""].into_iter(), Some(rudder)).map(|s| s[..2].to_vec()), Some(vec![-1.0, 1.0]));
         assert_eq!(signs(["S", "S"].into_iter(), Some(Meaning::Latitude)), Some(vec![-1.0, -1.0]));
         assert!(

@@ -3,8 +3,8 @@
 
 use super::clock::{
     DAY, DateOrder, FORMS, NumericTime, are_digits_of_day, are_shares_of_day, calendar, date_order, date_time,
-    digits_of_day, has_zone, is_date_alone, is_of_hour, numeric_time, past_midnight, past_the_hour, spread,
-    time_of_day, two_orders, zone,
+    digits_of_day, has_zone, is_date_alone, is_date_time, is_of_hour, numeric_time, past_midnight, past_the_hour,
+    spread, time_of_day, two_orders, zone,
 };
 use super::header::{Header, header};
 use super::jumps::{mend, words};
@@ -15,7 +15,7 @@ use crate::recording::Quantity;
 use crate::recording::import::columns::choose::Choices;
 use crate::recording::import::columns::names::{self, is_ships_name, meaning, time_rank, time_unit};
 use crate::recording::import::error::ImportError;
-use crate::recording::import::signals::log::{Clock, Column, Log, of_text};
+use crate::recording::import::signals::log::{Clock, Column, Log, Meaning, of_text};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::path::Path;
@@ -303,7 +303,7 @@ fn commas(path: &Path, rows: &[(usize, Vec<&str>)], layout: &Layout) -> Result<b
 
 /// Whether a field is a date, a time, or both.
 fn is_time(field: &str) -> bool {
-    field.len() >= 5 && (time_of_day(field).is_some() || date_time(field, DateOrder::DayFirst).is_some())
+    field.len() >= 5 && (time_of_day(field).is_some() || is_date_time(field))
 }
 
 /// The times of a table.
@@ -520,7 +520,7 @@ fn time_field(table: &Table<'_>, wanted: Option<&str>) -> Result<usize, ImportEr
     }
     let rank = |f: &usize| {
         let texts = || table.rows.iter().take(20).map(|(_, fields)| fields[*f]).filter(|t| !is_date_alone(t));
-        let joined = texts().any(|t| t.len() >= 8 && date_time(t, DateOrder::DayFirst).is_some());
+        let joined = texts().any(|t| t.len() >= 8 && is_date_time(t));
         (joined, texts().any(is_time), time_rank(&table.names[*f].0))
     };
     let best = (0..table.names.len()).rev().max_by_key(rank).filter(|f| rank(f) > (false, false, 0));
@@ -545,6 +545,7 @@ fn columns(table: &mut Table<'_>, used: &[usize], times: &[f64]) -> Vec<(Column,
             None => others.push(field),
         }
     }
+    join_arcs(&mut found, &mut notes);
     let timed = |row: &usize| times[*row].is_finite();
     for field in others {
         let name = &table.names[field].0;
@@ -552,7 +553,11 @@ fn columns(table: &mut Table<'_>, used: &[usize], times: &[f64]) -> Vec<(Column,
         // The column before it, that of the same name, or the one after it.
         let near = |by: usize| found.iter().position(|(f, ..)| *f + 1 == field + by);
         let alike = found.iter().position(|(_, c, _)| meaning(name).is_some() && meaning(&c.name) == meaning(name));
-        let signed = [near(0), alike, near(2)].into_iter().flatten().find_map(|at| {
+        // A telegraph may stand anywhere, where there is one propeller.
+        let rates =
+            || found.iter().enumerate().filter(|(_, (_, c, _))| meaning(&c.name).is_some_and(Meaning::is_rotation));
+        let one = rates().next().filter(|_| rates().count() == 1).map(|(at, _)| at);
+        let signed = [near(0), alike, near(2), one].into_iter().flatten().find_map(|at| {
             let (_, column, values) = &found[at];
             let free = values.iter().all(|v| v.is_nan() || *v >= 0.0);
             Some((at, signs(texts(), meaning(&column.name)).filter(|_| free)?))
@@ -576,6 +581,39 @@ fn columns(table: &mut Table<'_>, used: &[usize], times: &[f64]) -> Vec<(Column,
     table.texts.append(&mut unused);
     table.notes.append(&mut notes);
     found.into_iter().map(|(_, column, values)| (column, values)).collect()
+}
+
+/// Joins whole degrees of latitude or longitude with the minutes, and the seconds, in the columns behind them: `Lat deg`, `Lat min`.
+fn join_arcs(found: &mut Vec<(usize, Column, Vec<f64>)>, notes: &mut Vec<String>) {
+    let first = |c: &Column| names::words(&c.name).first().cloned().unwrap_or_default();
+    let is_part = |whole: &Column, part: &(usize, Column, Vec<f64>), begin: char| {
+        let (_, column, values) = part;
+        let named = column.unit.clone().or_else(|| names::words(&column.name).get(1).cloned());
+        named.is_some_and(|name| name.starts_with(begin))
+            && first(column) == first(whole)
+            && values.iter().all(|v| v.is_nan() || (0.0..60.0).contains(v))
+    };
+    for at in (0..found.len()).rev() {
+        let place = meaning(&first(&found[at].1)).filter(|m| matches!(m, Meaning::Latitude | Meaning::Longitude));
+        let is_whole = found[at].2.iter().all(|v| v.is_nan() || v.fract() == 0.0);
+        let part =
+            |at: usize, by: usize, begin: char| found.get(at + by).is_some_and(|p| is_part(&found[at].1, p, begin));
+        let parts = usize::from(part(at, 1, 'm')) * (1 + usize::from(part(at, 2, 's')));
+        if place.is_none() || !is_whole || parts == 0 {
+            continue;
+        }
+        let mut name = format!("`{}`", found[at].1.name);
+        for (by, share) in [60.0, 3600.0].iter().enumerate().take(parts) {
+            let (field, part, values) = found.remove(at + 1);
+            name += &format!("{} `{}`", if by + 1 == parts { " and" } else { "," }, part.name);
+            found[at].0 = field;
+            // Nought degrees may be negative.
+            found[at].2.iter_mut().zip(values).for_each(|(v, part)| *v += (part / share).copysign(*v));
+        }
+        let joined = &mut found[at].1;
+        (joined.meaning, joined.unit) = (place, Some("deg".to_owned()));
+        notes.push(format!("columns {name} are the degrees and parts of one arc, and are joined"));
+    }
 }
 
 /// A column of numbers without its samples, and its values; `None` where it has none, or contains text.

@@ -138,6 +138,11 @@ impl Meaning {
             || (self.quantity() == Quantity::Angle && !matches!(self, Self::Latitude) && !self.is_rudder())
     }
 
+    /// Whether it is a propeller rate that was measured.
+    pub fn is_rotation(self) -> bool {
+        self == Self::Channel(Channel::N)
+    }
+
     fn is_rudder(self) -> bool {
         matches!(self, Self::Channel(Channel::Delta | Channel::DeltaOrder))
     }

@@ -64,6 +64,8 @@ enum Form {
     Minutes,
     /// Degrees and minutes in one number.
     DegreesMinutes,
+    /// Degrees, minutes and seconds in one number.
+    DegreesMinutesSeconds,
     /// Whole ten-millionths of a degree, as autopilots and receivers send them.
     TenMillionths,
 }
@@ -79,6 +81,8 @@ impl Form {
             _ if both_are(1f64.to_radians() / 60.0) => Self::Minutes,
             // Degrees and minutes reach 9000 in latitude and 18000 in longitude.
             latitude if latitude.max(usual(both[1])) > 20_000.0 && whole() => Self::TenMillionths,
+            // The same in seconds reach a hundred times as many.
+            latitude if latitude > 9000.0 => Self::DegreesMinutesSeconds,
             latitude if latitude > 90.0 => Self::DegreesMinutes,
             _ => Self::Degrees,
         }
@@ -90,6 +94,7 @@ impl Form {
             Self::Radians => "rad",
             Self::Minutes => "min of arc",
             Self::DegreesMinutes => "deg and minutes (dddmm.mmm)",
+            Self::DegreesMinutesSeconds => "deg, minutes and seconds (dddmmss.ss)",
             Self::TenMillionths => "1e-7 deg",
         }
     }
@@ -100,6 +105,11 @@ impl Form {
             Self::Radians => v.to_degrees(),
             Self::Minutes => v / 60.0,
             Self::DegreesMinutes => from_minutes(v).unwrap_or(f64::NAN),
+            Self::DegreesMinutesSeconds => {
+                let minutes = (v.abs() / 100.0).floor() + v.abs() % 100.0 / 60.0;
+                // Seconds may be rounded to 60.
+                if v.abs() % 100.0 <= 60.0 { from_minutes(minutes.copysign(v)).unwrap_or(f64::NAN) } else { f64::NAN }
+            }
             Self::TenMillionths => v * 1e-7,
         }
     }
@@ -141,6 +151,7 @@ mod tests {
         let cases = [
             (54.18, -7.45, None, "deg"),
             (5410.8, -727.0, None, "deg and minutes (dddmm.mmm)"),
+            (541_048.2, -72_700.2, None, "deg, minutes and seconds (dddmmss.ss)"),
             (3250.8, -447.0, minute, "min of arc"),
             (541_800_000.0, -74_500_000.0, None, "1e-7 deg"),
             (54.18f64.to_radians(), (-7.45f64).to_radians(), Some(1.0), "rad"),
