@@ -203,7 +203,7 @@ pub enum RecordingError {
         step: f64,
     },
     /// Nothing is left once rows with missing values are taken out.
-    #[error("{path}:{line}: no two consecutive rows have every channel ({what}); leave out the channel that is missing, or bridge short dropouts with `bridge` in a column map", path = path.display())]
+    #[error("{path}:{line}: no two consecutive rows have every channel ({what}); leave out the channel that is missing, or bridge short dropouts with `bridge` in a column map (`--bridge SECONDS` of an import)", path = path.display())]
     NothingUsable {
         /// The file.
         path: PathBuf,

@@ -168,6 +168,156 @@ fn of_columns_that_are_named_alike_the_one_that_agrees_with_the_data_is_taken() 
 }
 
 #[test]
+fn of_equals_the_one_that_agrees_more_closely_is_taken() {
+    // A log 4 % off the speed over ground, a compass 7 deg off the gyro's, and an autopilot's course.
+    let text = log(",Speed 2,Heading gyro", |row| format!(",10.00,{:.2}", row.heading));
+    let wrong = |line: &str| {
+        let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+        if let Ok(heading) = cells[5].parse::<f64>() {
+            cells[3] = "10.40".to_owned();
+            cells[5] = format!("{:.2}", (heading + 7.0).rem_euclid(360.0));
+        }
+        cells.join(",") + "\n"
+    };
+    for heading in ["Heading 1", "Heading A/P"] {
+        let text: String = text.lines().map(wrong).collect();
+        let imported = read(&text.replace("sog_kn", "Speed 1").replace(",heading", &format!(",{heading}")));
+        assert_eq!(["sog", "psi"].map(|q| taken(&imported, q)), ["Speed 2", "Heading gyro"], "{heading}");
+    }
+}
+
+/// The usual log with its cells changed, and a header of its own.
+fn changed(header: &str, cells: impl Fn(&Row, Vec<String>) -> Vec<String>) -> String {
+    let line = |row: &Row| cells(row, fields(row).split(',').map(str::to_owned).collect()).join(",") + "\n";
+    format!("{header}\n{}", sailed(0.0).iter().map(line).collect::<String>())
+}
+
+#[test]
+fn degrees_and_minutes_in_columns_of_their_own_are_one_place() {
+    for (header, sides) in [
+        ("time,Lat deg,Lat min,N/S,Lon deg,Lon min,E/W,sog_kn,cog,heading,rudder,rpm", true),
+        ("time,Lat D,Lat M,Lon D,Lon M,sog_kn,cog,heading,rudder,rpm", false),
+    ] {
+        let text = changed(header, |row, mut cells| {
+            let arc = |v: f64, side: &str| {
+                let mut both = vec![format!("{:.0}", v.floor()), format!("{:.5}", 60.0 * v.fract())];
+                both.extend(sides.then(|| side.to_owned()));
+                both
+            };
+            cells.splice(1..3, [arc(row.place[0], "N"), arc(row.place[1], "E")].concat());
+            cells
+        });
+        let imported = read(&text);
+        let [lat, lon] = imported.origin.unwrap();
+        assert!(
+            (lat - 36.5).abs() < 0.1 && (lon - 14.25).abs() < 0.1 && off(&imported) < 0.01,
+            "{header}: {lat} {lon}"
+        );
+        let x = channel(&imported, 0, Channel::X);
+        let sailed = (sailed(0.0)[200].place[0] - sailed(0.0)[0].place[0]).to_radians() * 6.359e6;
+        assert!((x[200] - x[0] - sailed).abs() < 5.0, "{header}");
+        contains_all(&notes(&imported), &["degrees and parts of one arc"]);
+    }
+}
+
+#[test]
+fn a_share_of_an_actuator_is_asked_for_with_the_line_that_takes_it() {
+    let rudder = |share: f64| {
+        move |row: &Row, mut cells: Vec<String>| {
+            // Hard over a few times, at 35 deg.
+            let angle = if row.rudder == 14.0 { 35.0 } else { row.rudder };
+            cells[6] = format!("{:.4}", angle * share / 35.0);
+            cells
+        }
+    };
+    let percent = "time,lat,lon,sog_kn,cog,heading,RUDDER,rpm";
+    for (name, share, line) in [
+        ("Rudder %", 100.0, "--unit delta='0.35 deg'"),
+        ("Rudder [%]", 100.0, "--unit delta='0.35 deg'"),
+        ("Rudder (pct)", 100.0, "--unit delta='0.35 deg'"),
+        ("rudder_pct", 100.0, "--unit delta='0.35 deg'"),
+        ("Rudder", 100.0, "--unit delta='0.35 deg'"),
+        ("Rudder", 1.0, "--unit delta='35 deg'"),
+    ] {
+        let text = changed(&percent.replace("RUDDER", name), rudder(share));
+        let asked = written(&text, &ImportSettings::default()).unwrap_err();
+        contains_all(&asked, &[line]);
+        let unit = line.split('\'').nth(1).unwrap().to_owned();
+        let choices = Choices { units: [("delta".to_owned(), unit)].into(), ..Choices::default() };
+        let imported = written(&text, &ImportSettings { choices, ..ImportSettings::default() }).unwrap();
+        let most = channel(&imported, 0, Channel::Delta).iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        assert!((most - 35.0 * DEGREE).abs() < 1e-3, "{name}: {most}");
+    }
+    let text = log("", |_| String::new()).replace(",rpm", ",RPM %");
+    contains_all(&written(&text, &ImportSettings::default()).unwrap_err(), &["--unit n='1.5 rpm'"]);
+}
+
+#[test]
+fn a_direction_in_parts_of_a_turn_is_asked_for_with_its_unit() {
+    for (parts, unit) in [(400.0, "0.9 deg"), (3600.0, "0.1 deg"), (65_536.0, "0.0054931640625 deg")] {
+        let text = changed(NAMES, |row, mut cells| {
+            cells[5] = format!("{:.2}", (row.heading * parts / 360.0).min(parts));
+            cells
+        });
+        contains_all(&written(&text, &ImportSettings::default()).unwrap_err(), &[&format!("--unit psi='{unit}'")]);
+        let choices = Choices { units: [("psi".to_owned(), unit.to_owned())].into(), ..Choices::default() };
+        assert!(off(&written(&text, &ImportSettings { choices, ..ImportSettings::default() }).unwrap()) < 0.02);
+    }
+}
+
+#[test]
+fn a_rudder_that_is_not_counted_from_midships_is_told_its_offset() {
+    let text = changed(NAMES, |row, mut cells| {
+        cells[6] = format!("{:.1}", row.rudder + 35.0);
+        cells
+    });
+    contains_all(&written(&text, &ImportSettings::default()).unwrap_err(), &["35.0 is midships", "--unit delta=deg"]);
+    let choices = Choices { units: [("delta".to_owned(), "deg".to_owned())].into(), ..Choices::default() };
+    let imported = written(&text, &ImportSettings { choices, ..ImportSettings::default() }).unwrap();
+    contains_all(&notes(&imported), &["delta = { offset = -0.6109 }"]);
+}
+
+#[test]
+fn a_pitch_that_is_set_and_a_telegraph_are_heeded() {
+    let pitch = |row: &Row| if row.t < 600.0 { "80" } else { "-40" };
+    let imported = read(&log(",CPP pitch %", |row| format!(",{}", pitch(row))));
+    contains_all(&imported.notes[0], &["WARNING: column `CPP pitch %` goes from -40.0 to 80.0", "--column n=NAME"]);
+    let telegraph = |row: &Row| if row.t < 600.0 { "FULL AHEAD" } else { "HALF ASTERN" };
+    let imported = read(&log(",Remark,Telegraph", |row| format!(",-,{}", telegraph(row))));
+    let n = channel(&imported, 0, Channel::N);
+    assert!(n[10] > 1.9 && n[400] < -1.9, "{} {}", n[10], n[400]);
+    // The ship backs without a sign.
+    let text = changed(NAMES, |row, mut cells| {
+        cells[5] = format!("{:.2}", (row.heading + if row.t < 600.0 { 0.0 } else { 180.0 }).rem_euclid(360.0));
+        cells
+    });
+    contains_all(&notes(&read(&text)), &["never negative while the ship goes astern", "lacks its sign"]);
+}
+
+#[test]
+fn a_date_with_the_month_first_beside_a_time_is_a_date() {
+    let text = changed("Date,Time,lat,lon,sog_kn,cog,heading,rudder,rpm", |_, mut cells| {
+        let time = cells[0][11..19].to_owned();
+        cells.splice(0..1, ["10/22/2025".to_owned(), time]);
+        cells
+    });
+    let starts: Vec<_> = read(&text).recordings.iter().map(|r| r.start.clone().unwrap_or_default()).collect();
+    assert_eq!(starts, ["2025-10-22 10:00:00"]);
+    let far = changed(NAMES, |row, mut cells| {
+        cells[0] = format!("{}", 1e10 + row.t);
+        cells
+    });
+    contains_all(&notes(&read(&far)), &["WARNING: the times begin at 2286-11-20"]);
+}
+
+#[test]
+fn sentences_that_are_not_read_are_named_where_a_column_is_missing() {
+    let sentences = |row: &Row| format!("{}{}", rmc(row, "N", "E", ","), summed("PSAT,HPR,1,2.0"));
+    let asked = written(&sailed(0.0).iter().map(sentences).collect::<String>(), &ImportSettings::default());
+    contains_all(&asked.unwrap_err(), &["no column is the heading", "sentences that are not used: PSAT 600", "CSV"]);
+}
+
+#[test]
 fn of_an_order_and_a_feedback_the_feedback_is_the_angle() {
     // The order leaps; what is recorded as the rudder follows it at two and a half degrees a second.
     let orders: Vec<String> = sailed(0.0).iter().map(|row| format!("{:.1}", row.rudder)).collect();

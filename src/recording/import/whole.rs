@@ -2,10 +2,11 @@
 //! It writes nothing: the files of a study are made from its result in `study`.
 
 use super::columns::choose::{Choice, Choices, Chosen, Unused, choose};
-use super::columns::names::meaning;
+use super::columns::names::{meaning, words};
 use super::columns::take::{Signals, Taken, take};
 use super::error::{ImportError, flag};
-use super::formats::clock::written;
+use super::formats::clock::{THIS_CENTURY, written};
+use super::formats::nmea::UNUSED;
 use super::formats::read::read;
 use super::overlap::{apart, range, shifts};
 use super::rows::{Rows, rows};
@@ -104,6 +105,7 @@ fn imported(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, Im
     let taken = with_questions(take(&chosen, &settings.choices), asked);
     let taken = taken.map_err(|error| with_inputs(error, &chosen, &logs, driven));
     let mut signals = taken.map_err(|error| with_texts(error, &logs))?;
+    signals.notes.splice(0..0, pitches(&unused, &logs));
     signals.unused.extend(unused);
     for (meaning, words) in decided {
         let of = |taken: &&mut Taken| taken.quantity == meaning.name();
@@ -139,9 +141,7 @@ fn imported(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, Im
     // Notes on turned axes come first.
     signals.notes.append(&mut notes);
     let mut notes = std::mem::take(&mut signals.notes);
-    if !signals.by.contains_key(&Meaning::Channel(Channel::X)) {
-        notes.push("no column is taken for a position: if one is, name it with `--column lat=NAME --column lon=NAME` or `--column x=NAME --column y=NAME`".to_owned());
-    }
+    notes.extend(warnings(&signals, &recordings));
     let (derive, velocity) = derived(&signals, &recordings);
     let mut read: Vec<(PathBuf, String)> = logs.iter().map(|log| (log.path.clone(), log.format.clone())).collect();
     read.dedup();
@@ -161,6 +161,50 @@ fn imported(files: &[PathBuf], settings: &ImportSettings) -> Result<Imported, Im
     imported.part_with_lonely();
     imported.tell_gaps();
     Ok(imported)
+}
+
+/// A pitch that changes by more than this share of its most is set.
+const PITCHED: f64 = 0.05;
+
+/// The warning about columns of a controllable pitch: a model that knows the rate alone is driven by half of what drives the ship.
+fn pitches(unused: &[Unused], logs: &[Log]) -> Vec<String> {
+    let of_propeller = |name: &str| {
+        let parts = words(name);
+        let any = |list: &[&str]| parts.iter().any(|p| list.contains(&p.as_str()));
+        any(&["pitch", "cpp"])
+            && any(&["propeller", "prop", "cpp", "cp", "blade", "shaft"])
+            && !any(&["order", "setpoint"])
+    };
+    let range = |name: &str| {
+        let values = || logs.iter().flat_map(|log| &log.columns).filter(|c| c.name == name).flat_map(|c| &c.v);
+        values().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(*v), high.max(*v)])
+    };
+    let named = unused.iter().map(|u| u.column.as_str()).filter(|name| of_propeller(name));
+    let varied = named.map(|name| (name, range(name))).filter(|(_, [low, high])| high - low > PITCHED * high.max(-low));
+    let warn = |(name, [low, high]): (&str, [f64; 2])| {
+        format!(
+            "WARNING: column `{name}` goes from {} to {}: a controllable pitch, by which the thrust changes while n does not. No term knows it: keep to runs of one pitch, or write a column of rate times pitch over its most and take that with `--column n=NAME`",
+            sig(low, 3),
+            sig(high, 3)
+        )
+    };
+    varied.map(warn).collect()
+}
+
+/// What is said of a log without a position, and of dates that are none of a log.
+fn warnings(signals: &Signals, recordings: &[ImportedRecording]) -> Vec<String> {
+    let far = recordings.iter().find(|r| r.start.is_some() && r.clock_start >= THIS_CENTURY.end);
+    let far = far.map(|r| {
+        format!(
+            "WARNING: the times begin at {}: they count from another start than 1970, or in another unit (`--unit t=`), and dates and sessions are wrong",
+            written(r.clock_start)
+        )
+    });
+    let nowhere = !signals.by.contains_key(&Meaning::Channel(Channel::X));
+    let nowhere = nowhere.then(|| {
+        "no column is taken for a position: if one is, name it with `--column lat=NAME --column lon=NAME` or `--column x=NAME --column y=NAME`".to_owned()
+    });
+    nowhere.into_iter().chain(far).collect()
 }
 
 /// No manoeuvre is seen in rows so far apart \[s\].
@@ -302,7 +346,12 @@ fn numbers(logs: &[Log]) -> String {
     let mut names: Vec<&str> = logs.iter().flat_map(|log| log.columns.iter().map(|c| c.name.as_str())).collect();
     names.sort_unstable();
     names.dedup();
-    format!("the columns with numbers are: {}", names.join(", "))
+    let unread: Vec<&str> =
+        logs.iter().flat_map(|log| &log.notes).filter(|n| n.starts_with(UNUSED)).map(String::as_str).collect();
+    let list = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+    let more =
+        unread.iter().map(|note| format!("; {note}: what these alone give must be written as columns of a CSV file"));
+    format!("the columns with numbers are: {list}{}", more.collect::<String>())
 }
 
 /// What is asked of columns that are there, with the questions for inputs that are not, so that one answer is enough.

@@ -45,20 +45,23 @@ impl Sight {
         [clockwise, track.agreement(&signal, -1.0).map(quarter)].into_iter().flatten().reduce(f64::max)
     }
 
-    /// Whether the track is as fast as the column says in the unit that the file states, or in any where it states none.
+    /// One less the mean square of what the column is off the speed of the track, as a share of it, in the unit that the file states, or in
+    /// the nearest where it states none; nought where none is near.
     fn speed(&self, columns: &[&Column]) -> Option<f64> {
         let track = self.track.as_ref()?;
         let mut size = Signal::new(columns, 1.0, 0.0, false).0;
         size.v.iter_mut().for_each(|v| *v = v.abs());
         let pairs: Vec<[f64; 2]> = track.speed.pairs(&size).into_iter().filter(|p| p[0] > 0.3 * track.fast).collect();
         let found = ratio(&pairs)?;
-        let near = |factor: f64| (found.gain.abs() / factor).ln().abs() < NEAR;
         let stated = columns.iter().find_map(|c| Quantity::Speed.factor(c.unit.as_deref()?));
-        let fits = match stated {
-            Some(factor) => near(factor),
-            None => ["m/s", "kn", "km/h"].iter().filter_map(|u| Quantity::Speed.factor(u)).any(near),
-        };
-        Some(if fits && found.coherence > COHERENT { found.coherence } else { 0.0 })
+        let usual = ["m/s", "kn", "km/h"].iter().filter_map(|u| Quantity::Speed.factor(u));
+        let off = |factor: f64| (found.gain.abs() / factor).ln().abs();
+        let factor = stated.or_else(|| usual.min_by(|a, b| off(*a).total_cmp(&off(*b))))?;
+        if off(factor) >= NEAR || found.coherence <= COHERENT {
+            return Some(0.0);
+        }
+        let square = |f: &dyn Fn(&[f64; 2]) -> f64| pairs.iter().map(|p| f(p).powi(2)).sum::<f64>();
+        Some((1.0 - square(&|p| p[0] - factor * p[1]) / square(&|p| p[0])).max(0.0))
     }
 
     /// Coherence with the rate of the heading.
@@ -91,6 +94,8 @@ pub fn heading_unit(columns: &[&Column], track: Option<&Track>) -> f64 {
     own.or(compass_unit(columns, track).map(|shown| shown.factor)).or(stated).unwrap_or(1.0)
 }
 
+/// What columns lack of full agreement is a mean square: one fits worse where it is this many times that of another, twice its root.
+pub const CLEARLY: f64 = 4.0;
 /// One degree \[rad\].
 const DEGREE: f64 = TAU / 360.0;
 /// Any heading or course above this is no radian, but for one that counts turns.
@@ -119,6 +124,9 @@ pub struct Shown {
 
 /// The unit of a direction: the one in which it goes with the track, by a whole turn of which it jumps, or in which it has its size.
 pub fn compass_unit(columns: &[&Column], track: Option<&Track>) -> Option<Shown> {
+    if counts_gon(columns, track) {
+        return None;
+    }
     let of = |units: &[&'static str]| -> Vec<(&'static str, f64)> {
         units.iter().filter_map(|unit| Some((*unit, Quantity::Angle.factor(unit)?))).collect()
     };
@@ -132,6 +140,14 @@ pub fn compass_unit(columns: &[&Column], track: Option<&Track>) -> Option<Shown>
     let of_track = track.and_then(|track| track.unit_of_direction(raw, &factors));
     let by_track = units.iter().copied().find(|(_, factor)| Some(*factor) == of_track);
     let by_jumps = units.iter().copied().find(|(_, factor)| jumps_by(columns, TAU / factor));
+    // A direction that counts turns goes with the track, too.
+    let goes = |factor: f64| {
+        let both = [1.0, -1.0].map(|sense| track?.agreement(&raw(factor), sense));
+        both.into_iter().flatten().map(|[length, _]| length).reduce(f64::max)
+    };
+    let counted = |factor: f64| top * factor > FEW_TURNS * TAU;
+    let by_size =
+        by_size.filter(|(_, factor)| !counted(*factor) || goes(*factor).is_none_or(|length| length > COHERENT));
     let (unit, factor) = by_track.or(by_jumps).or(by_size)?;
     let values = format!("values up to {}", sig(largest(columns), 3));
     let words = match unit {
@@ -151,6 +167,19 @@ pub fn compass_unit(columns: &[&Column], track: Option<&Track>) -> Option<Shown>
         _ => values,
     };
     Some(Shown { unit, factor, why })
+}
+
+/// Values of a full turn in gon, of the last part of it from which a direction in gon leaps to its first, and of a turn in degrees.
+const GON: [f64; 3] = [400.0, 380.0, 361.0];
+
+/// Whether a direction passes north by leaps of a turn in gon, which is in no unit that is read here, or goes with the track so and not in
+/// degrees.
+fn counts_gon(columns: &[&Column], track: Option<&Track>) -> bool {
+    let [turn, leap, degrees] = GON;
+    let leaps = || columns.iter().flat_map(|c| c.v.windows(2)).any(|v| (v[1] - v[0]).abs() > leap);
+    let apart = |turn: f64| Some(1.0 - track?.agreement(&Signal::new(columns, TAU / turn, 0.0, true).0, 1.0)?[0]);
+    let goes = || apart(turn).zip(apart(360.0)).is_some_and(|(gon, degrees)| CLEARLY * gon < degrees);
+    top(columns) > degrees && largest(columns) <= turn && (leaps() || goes())
 }
 
 /// The unit that the size of a direction shows.

@@ -2,9 +2,10 @@
 //! Of several columns for one quantity one is taken and the others are listed; units and signs are not decided here.
 
 use super::actuators::by_names;
-use super::agree::{Sight, heading};
+use super::agree::{CLEARLY, Sight, heading, largest, top};
 use super::names::{Reading, VAGUELY, by_revolutions, is_second_choice, is_unit, name_and_unit, reading, source};
 use super::orders::follows;
+use super::scale::{full_turn, of_share};
 use crate::files::suggestion;
 use crate::recording::import::error::ImportError;
 use crate::recording::import::signals::log::{Column, Log, Meaning, needed};
@@ -377,6 +378,8 @@ const NAMED: [f64; 3] = [0.95, 0.65, 0.35];
 /// A column that agrees less with the data than this is contradicted by them: a direction at random has an agreement of nought and a
 /// sound one of nearly one.
 const CONTRADICTED: f64 = 0.4;
+/// A column agrees as well as the best within this mean square: 1 % of the speed, 0.8 deg of a direction, by which sensors of one ship differ.
+const CHANCE: f64 = 1e-4;
 
 /// The first of the best.
 fn best(list: &[Candidate<'_>], meaning: Meaning, partner: Option<&str>, sight: &Sight) -> usize {
@@ -388,9 +391,10 @@ fn best(list: &[Candidate<'_>], meaning: Meaning, partner: Option<&str>, sight: 
     let stated =
         |c: &Candidate<'_>| c.columns.first().is_some_and(|c| c.unit.as_deref().is_some_and(|u| is_stated(meaning, u)));
     let any_stated = list.iter().any(stated);
+    let agreements: Vec<Option<f64>> = list.iter().map(|c| sight.agreement(meaning, &c.columns)).collect();
+    let least = agreements.iter().flatten().fold(1.0_f64, |least, a| least.min(1.0 - a));
     let rank = |i: &usize| {
-        let c = &list[*i];
-        let agreement = sight.agreement(meaning, &c.columns);
+        let (c, agreement) = (&list[*i], agreements[*i]);
         (
             c.forced,
             (5 * samples(c) > most, moves(&c.columns)),
@@ -400,8 +404,9 @@ fn best(list: &[Candidate<'_>], meaning: Meaning, partner: Option<&str>, sight: 
             NAMED.iter().filter(|bound| c.explained > **bound).count(),
             !is_second_choice(c.name),
             stated(c),
-            // In tenths: a closer agreement is chance, and a few samples more are no better.
-            (agreement.map_or(5, |a| (10.0 * a) as usize), 10 * samples(c) / most.max(1)),
+            agreement.map_or(0.5, |a| 1.0 - a) <= CLEARLY * least + CHANCE,
+            // In tenths: a few samples more are no better.
+            10 * samples(c) / most.max(1),
         )
     };
     (0..list.len()).rev().max_by_key(rank).unwrap_or(0)
@@ -452,7 +457,21 @@ fn says_nothing(meaning: Meaning, unit: &str) -> bool {
 
 /// Whether a quantity may be measured in a unit: a rudder in deg/s is no rudder angle. A unit that is not known is asked for.
 fn fits(meaning: Meaning, unit: &str) -> bool {
-    is_stated(meaning, unit) || !is_unit(unit) || says_nothing(meaning, unit)
+    is_stated(meaning, unit)
+        || !is_unit(unit)
+        || says_nothing(meaning, unit)
+        || (is_actuator(meaning) && is_share(unit))
+}
+
+/// Whether a quantity is of an actuator, which a logger may write as a share of its most.
+fn is_actuator(meaning: Meaning) -> bool {
+    use Channel::{Delta, DeltaOrder, N, NOrder};
+    matches!(meaning, Meaning::Channel(Delta | DeltaOrder | N | NOrder))
+}
+
+/// Whether a unit is that of a share: `%`, `pct`, `% MCR`, `-`.
+fn is_share(unit: &str) -> bool {
+    unit.contains('%') || unit == "pct" || Quantity::Number.factor(unit).is_some()
 }
 
 /// The question for a unit that is not known, where no other column shows it: speeds and rates are compared with the track and the heading.
@@ -464,8 +483,13 @@ fn unknown_unit(meaning: Meaning, columns: &[&Column], choices: &Choices) -> Opt
     }
     let (name, choices) = (meaning.name(), meaning.quantity().choices().replace(", ", " or "));
     let column = columns.first().map_or("", |c| c.name.as_str());
+    if is_actuator(meaning) && is_share(unit) {
+        return Some(of_share(meaning, column, top(columns)));
+    }
     Some(format!(
-        "the unit `{unit}` of column `{column}` ({}) is not known: pass `--unit {name}={choices}`, or write the column in one of these",
-        meaning.words()
+        "the unit `{unit}` of column `{column}` ({}) is not known: pass `--unit {name}={choices}`, or how much one is, such as `--unit {name}='0.1 {}'`{}, or write the column in one of these",
+        meaning.words(),
+        meaning.quantity().si(),
+        full_turn(meaning, largest(columns))
     ))
 }

@@ -3,11 +3,11 @@
 
 use super::agree::{MOST_RADIANS, compass_unit, counts_turns, largest, top};
 use super::names::is_magnetic;
-use super::scale::{advice, clock};
+use super::scale::{MOST_SHARE, advice, clock, full_turn, of_share};
 use crate::numerals::sig;
 use crate::recording::import::signals::log::{Column, Meaning};
 use crate::recording::import::signals::motion::{AGREE, COHERENT, Track, ratio, rudder_effect};
-use crate::recording::import::signals::signal::{Signal, size_below};
+use crate::recording::import::signals::signal::{Signal, median, size_below};
 use crate::recording::{Channel, Quantity};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -82,6 +82,12 @@ const FAR: f64 = 5.0;
 const STEADY: f64 = 0.052;
 /// t value of the rudder's effect from which its sign is determined.
 const RUDDER_T: f64 = 5.0;
+/// Hard over is at 35 deg by the rules (SOLAS II-1/29), and hardly any rudder goes beyond 45 deg \[rad\].
+const HARD_OVER: f64 = 0.785;
+/// A rudder that mostly shows more than this share of its most is not measured from midships.
+const AMIDSHIPS: f64 = 0.2;
+/// Share of the values that may be stray.
+const STRAY: f64 = 0.005;
 /// Any rudder angle above this is no radian.
 const MOST_RUDDER: f64 = 1.6;
 /// A rate above the first is rpm, one below the second rps.
@@ -141,8 +147,10 @@ pub fn direction(
         (Some(given), None) if top * given.factor < MOST_RADIANS || counts_turns(columns, given.factor) => {
             (given.unit.as_str(), given.factor, String::new())
         }
-        _ if top > MOST_RADIANS => return Err(ask(meaning, name, "deg, cdeg or mrad")),
-        _ => return Err(ask(meaning, name, "deg or rad")),
+        _ => {
+            let units = if top > MOST_RADIANS { "deg, cdeg or mrad" } else { "deg or rad" };
+            return Err(ask(meaning, name, units) + &full_turn(meaning, top));
+        }
     };
     let agrees =
         given.is_some_and(|g| g.by_user || stated.filter(goes).is_some() || (g.factor / factor - 1.0).abs() < 1e-6);
@@ -317,11 +325,18 @@ pub fn rudder(meaning: Meaning, columns: &[&Column], given: Option<&Given>, know
     });
     // Hardly any ship turns half round with less than a degree and a half of rudder.
     let too_little = top <= MOST_RUDDER && turned > 3.0;
+    let mut side = None;
     let mut verdict = match given {
         Some(given) if given.by_user || given.factor < 0.5 || top <= MOST_RUDDER => as_given(given, ""),
         given if top > MOST_RUDDER => {
+            if is_per_cent(columns) {
+                return Err(of_share(meaning, name, top));
+            }
             let (unit, factor) = rudder_unit(columns).ok_or_else(|| ask(meaning, name, "deg, cdeg or mrad"))?;
             by_data(unit, factor, format!("angles up to {}", sig(top, 3)), given)
+        }
+        None if too_little && (HARD_OVER..MOST_SHARE).contains(&top) => {
+            return Err(format!("{}, or {}", ask(meaning, name, "rad"), of_share(meaning, name, top)));
         }
         given if too_little => {
             let why = format!("angles up to {} turn the ship through {} deg", sig(top, 3), sig(turned.to_degrees(), 3));
@@ -329,12 +344,22 @@ pub fn rudder(meaning: Meaning, columns: &[&Column], given: Option<&Given>, know
         }
         _ => return Err(ask(meaning, name, "deg or rad")),
     };
-    if given.is_none_or(|g| !g.by_user) && lacks_side(columns, known) {
-        return Err(format!(
-            "the side of column `{name}` ({}), which is never negative while the ship turns to both sides: give it a sign, letters P and S, or a column of them beside it; with `--unit {}={}` it is taken as it is",
-            meaning.words(),
-            meaning.name(),
-            verdict.unit
+    if lacks_side(columns, known) {
+        let midships = columns.iter().filter_map(|c| median(c.v.clone())).fold(0.0, f64::max);
+        let middle = (midships > AMIDSHIPS * top).then(|| sig(midships, 3));
+        if given.is_none_or(|g| !g.by_user) {
+            let (flag, unit) = (meaning.name(), &verdict.unit);
+            let middle = middle.map_or_else(String::new, |middle| {
+                format!("; where {middle} is midships, pass how much one is, `--unit {flag}={unit}` or `--unit {flag}='14 deg'`, and the import gives the offset")
+            });
+            return Err(format!(
+                "the side of column `{name}` ({}), which is never negative while the ship turns to both sides: give it a sign, letters P and S, or a column of them beside it; with `--unit {flag}={unit}` it is taken as it is{middle}",
+                meaning.words()
+            ));
+        }
+        let offset = sig(-midships * verdict.factor, 4);
+        side = middle.map(|middle| format!(
+            "never negative while the ship turns to both sides: where {middle} is midships, `delta = {{ offset = {offset} }}` (rad) in [columns] of columns.toml takes it out"
         ));
     }
     let signal = Signal::new(columns, verdict.factor, 0.0, false).0;
@@ -352,6 +377,7 @@ pub fn rudder(meaning: Meaning, columns: &[&Column], given: Option<&Given>, know
                 Some("the recordings do not determine its sign: positive must turn the ship to starboard".to_owned());
         }
     }
+    verdict.doubt = [verdict.doubt.take(), side].into_iter().flatten().reduce(|a, b| format!("{a}; {b}"));
     if let Some(given) = given.filter(|g| !g.by_user && g.factor < 0.5 && too_little) {
         let doubt = format!(
             "the file says {}, and {} of them turn the ship through {} deg: if the values are radians, pass `--unit {}=rad`",
@@ -363,6 +389,14 @@ pub fn rudder(meaning: Meaning, columns: &[&Column], given: Option<&Given>, know
         verdict.doubt = Some(verdict.doubt.take().map_or(doubt.clone(), |sign| format!("{doubt}; {sign}")));
     }
     Ok(verdict)
+}
+
+/// Whether numbers are more than the degrees of any rudder, in more than stray ones, and no more than 100 per cent.
+fn is_per_cent(columns: &[&Column]) -> bool {
+    let most = Channel::Delta.info().limits.1.to_degrees();
+    let values = || columns.iter().flat_map(|c| &c.v);
+    let beyond = values().filter(|v| v.abs() > most).count();
+    top(columns) < 100.0 * MOST_SHARE && values().any(|v| *v < 0.0) && beyond as f64 > STRAY * values().count() as f64
 }
 
 /// The unit of rudder angles by their size: degrees where a rudder reaches as many, or else the one in which it does.
@@ -433,7 +467,34 @@ pub fn rotation(
             "{rpm} rpm is much for a ship's propeller: if it is the engine's, add `n = {{ scale = 0.2 }}` (1 / gear ratio) to [columns] of columns.toml"
         ));
     }
+    let unsigned = astern_unsigned(columns, top, known);
+    verdict.doubt = [unsigned, verdict.doubt.take()].into_iter().flatten().reduce(|a, b| format!("{a}; {b}"));
     Ok(verdict)
+}
+
+/// Seconds for which a ship makes sternway, and its least share of her speed ahead, that no current or stop by itself explains.
+const STERNWAY: (f64, f64) = (30.0, 0.1);
+
+/// What is said of a rate that is never negative while the ship goes astern with her propeller turning.
+fn astern_unsigned(columns: &[&Column], top: f64, known: &Known) -> Option<String> {
+    let (track, psi) = known.track.as_ref().zip(known.psi.as_ref())?;
+    if columns.iter().flat_map(|c| &c.v).any(|v| *v < -0.02 * top) {
+        return None;
+    }
+    let rate = Signal::new(columns, 1.0, 0.0, false).0;
+    let astern = |i: &usize| {
+        let t = track.speed.t[*i];
+        let (sin, cos) = psi.at(t, track.speed.step).sin_cos();
+        let ahead = track.north.v[*i] * cos + track.east.v[*i] * sin;
+        ahead < -STERNWAY.1 * track.fast && rate.at(t, rate.step.max(track.speed.step)) > 0.1 * top
+    };
+    let seconds = (0..track.speed.t.len()).filter(astern).count() as f64 * track.speed.step;
+    (seconds > STERNWAY.0).then(|| {
+        format!(
+            "never negative while the ship goes astern for {} s with the propeller turning: it lacks its sign, and every run with the engine astern is wrong; make it negative there, or add a column of the sense (ahead, astern) beside it",
+            sig(seconds, 3)
+        )
+    })
 }
 
 /// No propeller turns faster \[rps\]: `trimtab help channels`.

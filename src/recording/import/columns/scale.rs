@@ -1,7 +1,8 @@
-//! What a factor between the speed of a track and a recorded one says: the time or the positions are in another unit than they were taken for.
+//! What a factor between the speed of a track and a recorded one, or the size of values, says: another unit than was taken or is known.
 //! It decides nothing, and gives the flags to pass.
 
 use crate::recording::Quantity;
+use crate::recording::import::signals::log::Meaning;
 
 /// The factor of a unit is met within this share (of its logarithm): speeds through water differ from those over ground by less.
 const NEAR: f64 = 0.3;
@@ -25,6 +26,35 @@ pub fn clock(name: &str, times: f64) -> Option<String> {
     Some(format!(
         "the track goes with column `{name}` in {speed} where the time counts {words}: pass `--unit t={flag}`"
     ))
+}
+
+/// Shares of a whole above this are hundredths; the noise of a sensor takes those of one no farther.
+pub const MOST_SHARE: f64 = 1.1;
+
+/// The question for a column of an actuator that is written as a share of its most.
+pub fn of_share(meaning: Meaning, column: &str, top: f64) -> String {
+    let (parts, whole) = if top > MOST_SHARE { (100.0, "100 %") } else { (1.0, "1") };
+    let (most, unit) = if meaning.quantity() == Quantity::Angle { (35.0, "deg") } else { (150.0, "rpm") };
+    format!(
+        "how much {whole} is of column `{column}` ({}), which is a share of its most: where that is {most} {unit} pass `--unit {}='{} {unit}'`",
+        meaning.words(),
+        meaning.name(),
+        most / parts
+    )
+}
+
+/// Parts into which a full turn is divided, beside degrees and radians: turns, gon, tenths of a degree, mils (NATO), binary angles.
+const PARTS: [f64; 5] = [1.0, 400.0, 3600.0, 6400.0, 65_536.0];
+/// A direction comes so near to a full turn in a log that goes round.
+const ALL_ROUND: f64 = 0.95;
+
+/// The flag with which the values of a direction fill a full turn, where one of the usual parts of it does so.
+pub fn full_turn(meaning: Meaning, top: f64) -> String {
+    let parts = PARTS.iter().find(|parts| (ALL_ROUND * **parts..=**parts).contains(&top)).filter(|_| meaning.wraps());
+    parts.map_or_else(String::new, |parts| {
+        let degrees = 360.0 / parts;
+        format!(" (with `--unit {}='{degrees} deg'` its values up to {top} fill a full turn)", meaning.name())
+    })
 }
 
 /// What to do where the track is sailed `times` as fast as a speed says.

@@ -7,7 +7,7 @@ mod header;
 mod jumps;
 mod layout;
 mod marks;
-mod nmea;
+pub mod nmea;
 #[cfg(feature = "parquet")]
 mod parquet;
 pub(super) mod passes;

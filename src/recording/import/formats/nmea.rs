@@ -39,6 +39,7 @@ const VALUES: &[(&str, Option<Meaning>, &str)] = &[
     ("RPM engine 0", Some(Meaning::Channel(Channel::N)), "rpm"),
     ("RPM engine 1", Some(Meaning::Channel(Channel::N)), "rpm"),
     ("RPM engine 2", Some(Meaning::Channel(Channel::N)), "rpm"),
+    (PITCH, None, "%"),
     ("VBW water speed ahead", Some(Meaning::Channel(Channel::UWater)), "kn"),
     ("VBW water speed across", Some(Meaning::Channel(Channel::VWater)), "kn"),
     ("VHW water speed", Some(Meaning::Channel(Channel::UWater)), "kn"),
@@ -55,6 +56,11 @@ const VALUES: &[(&str, Option<Meaning>, &str)] = &[
     ("DPT depth from the surface", Some(Meaning::Channel(Channel::Depth)), "m"),
     ("DPT depth below the transducer", None, "m"),
 ];
+
+/// What is noted of kinds of sentences that are not read.
+pub const UNUSED: &str = "sentences that are not used";
+/// The pitch of a propeller, in per cent of its most.
+const PITCH: &str = "RPM propeller pitch";
 
 /// A sentence that passed its check.
 struct Sentence<'a> {
@@ -270,6 +276,7 @@ fn record(s: &Sentence<'_>) -> Record {
         "RPM" => {
             let source = if s.text(0).eq_ignore_ascii_case("E") { "engine" } else { "shaft" };
             put(&format!("RPM {source} {}", s.text(1)), s.number(2).filter(|_| s.valid(4)));
+            put(PITCH, s.number(3).filter(|_| s.valid(4)));
         }
         _ => more(s, &mut record),
     }
@@ -369,7 +376,7 @@ pub fn read_nmea(path: &Path, bytes: &[u8]) -> Result<Vec<Log>, ImportError> {
     if !unknown.is_empty() {
         let own = |kind: &str| if is_makers(kind) { " (a maker's own)" } else { "" };
         let list: Vec<String> = unknown.iter().map(|(kind, count)| format!("{kind} {count}{}", own(kind))).collect();
-        notes.push(format!("sentences that are not used: {}", list.join(", ")));
+        notes.push(format!("{UNUSED}: {}", list.join(", ")));
     }
     let (clock, times, how) = times(&records);
     if times.iter().flatten().count() < 2 {
