@@ -11,6 +11,6 @@
 mod fitted;
 mod monomial;
 pub mod sides;
-mod sparse;
+pub(super) mod sparse;
 
 pub use fitted::{Law, LawTerm, Visited};

@@ -1,10 +1,12 @@
 //! Which mechanism explains the data best: refits the leader of a ranking and its rivals with everything else free, compares
 //! them, and keeps every one that the data allow. What is tested, and what is said of the outcome, is decided elsewhere.
 
+use super::eligible::Beside;
 use super::problem::Problem;
+use super::saturated::{hidden, over_any_force};
 use super::screen::{Row, Screen};
 use super::selected::Selected;
-use super::together::Leading;
+use super::together::{Leading, leading};
 use crate::diagnose::evidence::candidate::{Candidate, Extent};
 use crate::diagnose::evidence::forces::only_cancels;
 use crate::diagnose::evidence::kinematic::{agreements, gain};
@@ -340,6 +342,15 @@ impl Competition<'_> {
         (is_shown && self.is_confirmed(&found)).then(|| self.selected(self.pooled(found), true, p, set, why))
     }
 
+    /// The error of a sensor that the saturated model shows, where a refit confirms it and no law of a force explains it.
+    fn hidden(&self, error: Leading) -> Option<Refit> {
+        let Leading { set, extent, amplitude, statistic, p, model, free, noise } = error;
+        let hypothesis = Hypothesis { candidate: set[0], extent, amplitude, statistic, p };
+        let found = self.settled(hypothesis, &model, &free, &noise);
+        let over = || over_any_force(&found.estimate, set[0], &found.hypothesis.extent, self.problem);
+        (self.is_confirmed(&found) && over() > INDISTINGUISHABLE).then_some(found)
+    }
+
     /// Refits the leader of a ranking and its rivals.
     fn contest(&self, leaders: &[&Row]) -> Contest {
         let mut out =
@@ -365,11 +376,12 @@ impl Competition<'_> {
         out
     }
 
-    /// Refits the leader of a ranking and its rivals, beside them what is either so or not in the model as it was given, and returns the best
-    /// with its confidence set; `None` where no refit confirms the gain that its test predicted.
-    fn best(&self, leaders: &[&Row], given: Option<&Model>) -> Option<(Selected, Estimate)> {
+    /// Refits the leader of a ranking and its rivals, beside them errors of sensors that are hidden in the base and its noise, and what is
+    /// either so or not in the model as it was given, and returns the best with its confidence set; `None` where no refit confirms the gain that its test predicted.
+    fn best(&self, leaders: &[&Row], hidden: Vec<Leading>, given: Option<&Model>) -> Option<(Selected, Estimate)> {
         let candidates = self.problem.candidates;
         let mut contest = self.contest(leaders);
+        hidden.into_iter().filter_map(|error| self.hidden(error)).for_each(|found| contest.enter(found));
         given.into_iter().flat_map(|model| self.whole(model)).for_each(|found| contest.enter(found));
         let Contest { mut refitted, settled, alike, p, least } = contest;
         let entry = |(place, r): (usize, &Refit)| {
@@ -504,22 +516,22 @@ pub fn compare(
     current: &Estimate,
     problem: Problem,
 ) -> Option<(Selected, Estimate)> {
-    Competition { screen, current, problem }.best(leaders, None)
+    Competition { screen, current, problem }.best(leaders, Vec::new(), None)
 }
 
 /// The first error of a sensor that a refit confirms: the kinematic consistency of the sensors comes before every mechanism of the ship. Else as
-/// [`compare`], and beside the leaders what is either so or not, whatever gain its test predicts, in the model as it was `given`.
+/// [`compare`], and beside the leaders errors of sensors that are hidden in the base, and what is either so or not, whatever gain its test predicts, in the model as it was `given`.
 pub fn compete(
     screen: &Screen,
     leaders: &[&Row],
-    sensors: Vec<Leading>,
+    beside: Beside,
     given: Option<&Model>,
     current: &Estimate,
     problem: Problem,
     progress: &dyn Fn(&str),
 ) -> Option<(Selected, Estimate)> {
     let refitting = |i: usize| progress(&format!("refitting with {}", problem.candidates[i].mechanism.title));
-    for sensor in sensors {
+    for sensor in leading(current, problem, beside) {
         refitting(sensor.set[0]);
         let shown = Competition { screen, current, problem }.shown(sensor);
         if shown.is_some() {
@@ -529,7 +541,7 @@ pub fn compete(
     if let Some(first) = leaders.first() {
         refitting(first.candidate);
     }
-    Competition { screen, current, problem }.best(leaders, given)
+    Competition { screen, current, problem }.best(leaders, hidden(current, problem, beside), given)
 }
 
 #[cfg(test)]

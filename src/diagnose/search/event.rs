@@ -9,7 +9,6 @@ use super::present::{Present, present};
 use super::problem::Problem;
 use super::screen::{Screen, screen};
 use super::selected::Selected;
-use super::together::leading;
 use crate::diagnose::evidence::candidate::{Candidate, applies, candidates};
 use crate::diagnose::evidence::locate::{Location, locate, pushes_left};
 use crate::diagnose::evidence::push::PUSH;
@@ -145,9 +144,9 @@ impl Opening {
             let present = tests.present();
             let beside = Beside { present: &present, selected: &[], nothing_else: true };
             let leaders = eligible(&tests.screen, &tests.candidates, beside, settings);
-            let (estimate, sensors) = (&tests.fit.estimate, leading(&tests.fit.estimate, problem, beside));
+            let estimate = &tests.fit.estimate;
             let given = Some(&question.full);
-            compete(&tests.screen, &leaders, sensors, given, estimate, problem, question.progress)
+            compete(&tests.screen, &leaders, beside, given, estimate, problem, question.progress)
         };
         let left =
             |(_, found): &(Selected, Estimate)| tests.search.push(found, problem.runs).map_or(0.0, |p| p.statistic);

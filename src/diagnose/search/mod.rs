@@ -8,10 +8,10 @@
 //! | [`screen`] | the score test of every mechanism |
 //! | `event` | the tests of the base model, and an event in time before any mechanism |
 //! | `present`, `eligible` | what the model has already, and what may be named |
-//! | `together` | errors of sensors, estimated with the noise |
+//! | `together` | errors of sensors that their consistency shows |
+//! | `saturated` | errors of sensors that are hidden in the base and its noise |
 //! | `compete` | refits of a leader and its rivals |
 //! | `select`, `selected` | forward selection with removal and replacement |
-//! | `refit` | the accepted model through Ipopt |
 //! | `alike`, `residual` | mechanisms with like effects, and the tests of what is left |
 //! | [`decide`] | the decision, a pure function of the table of tests |
 
@@ -24,6 +24,7 @@ pub(super) mod event;
 pub(super) mod present;
 pub(super) mod problem;
 pub(super) mod residual;
+pub(super) mod saturated;
 pub mod screen;
 pub(super) mod select;
 pub(super) mod selected;

@@ -10,7 +10,6 @@ use super::present::Present;
 use super::problem::Problem;
 use super::screen::{Row, Screen, screen};
 use super::selected::Selected;
-use super::together::leading;
 use crate::diagnose::evidence::admit::followed;
 use crate::diagnose::evidence::push::Push;
 use crate::diagnose::evidence::wald::Wald;
@@ -68,10 +67,9 @@ impl Selection {
         let nothing_else = self.push.is_none() && !by_euler;
         let beside = Beside { present: &present, selected: &self.mechanisms, nothing_else };
         let leaders = eligible(screen, problem.candidates, beside, question.settings);
-        let sensors = leading(&self.estimate, problem, beside);
         // A base biased by what it lacks is no start for what is either so or not; with what was found in the model its test is enough.
         let given = self.mechanisms.is_empty().then_some(&question.full);
-        let next = compete(screen, &leaders, sensors, given, &self.estimate, problem, question.progress);
+        let next = compete(screen, &leaders, beside, given, &self.estimate, problem, question.progress);
         if next.is_none() {
             self.latest = latest;
         }
