@@ -7,7 +7,7 @@ use super::answer::diagnosis::{Diagnosis, Trace};
 use super::answer::models::{OnUnseen, Whose, on_unseen, written};
 use super::answer::sailed::{Sailed, sailed};
 use super::answer::summary::{absorbed, adequacy, budget, confusable, detectable, moves, ranking, resolved, traces};
-use super::answer::words::{Missing, Said, differing, headline, next_trial};
+use super::answer::words::{Missing, Said, Worse, differing, headline, next_trial};
 use super::error::DiagnoseError;
 use super::evidence::generic::corrected;
 use super::evidence::push::Window;
@@ -209,7 +209,10 @@ fn report(
         holds: answer.base.holds,
         form_holds: tests.search.chance.form_holds,
         missing: missing.as_ref(),
-        worse: proof.as_ref().filter(|p| p.is_worse()).and_then(|p| Some([p.before?, p.after?])),
+        worse: proof.as_ref().filter(|p| p.is_worse()).map(|p| Worse {
+            diverged: p.diverged(),
+            cvdm: p.before.zip(p.after).map(|(before, after)| [before, after]),
+        }),
     };
     Diagnosis {
         schema: "trimtab-diagnosis/2",

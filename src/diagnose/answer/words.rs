@@ -118,8 +118,8 @@ pub struct Said<'a> {
     pub form_holds: bool,
     /// What is missing and not in the catalogue.
     pub missing: Option<&'a Missing<'a>>,
-    /// cVDM \[%\] of unseen runs without the findings and with all of them, where they predict these runs worse.
-    pub worse: Option<[f64; 2]>,
+    /// Unseen runs without the findings and with all of them, where they predict these runs worse.
+    pub worse: Option<Worse>,
     /// The ship's own coefficients beside what is known of such coefficients.
     pub hull: &'a [Budget],
     /// Windows with a force that the base model does not have.
@@ -376,14 +376,30 @@ fn named(findings: &[Finding]) -> String {
     sentences.join(" ")
 }
 
+/// Unseen runs simulated by two models.
+#[derive(Clone, Copy)]
+pub struct Worse {
+    /// Runs on which each diverges.
+    pub diverged: [usize; 2],
+    /// cVDM \[%\] of each, where there are runs on which neither diverges.
+    pub cvdm: Option<[f64; 2]>,
+}
+
 /// That all findings together predict unseen runs worse, where they do.
-fn together(worse: Option<[f64; 2]>) -> String {
-    worse.map_or(String::new(), |worse| {
-        let [before, after] = worse.map(|cvdm| sig(cvdm, 3));
-        let than = if before == after {
-            format!("no better than the base model (cVDM {before} %)")
-        } else {
-            format!("worse than the base model (cVDM {before} % to {after} %)")
+fn together(worse: Option<Worse>) -> String {
+    worse.map_or(String::new(), |Worse { diverged: [without, with], cvdm }| {
+        let cvdm = cvdm.map(|both| both.map(|cvdm| sig(cvdm, 3)));
+        let than = match cvdm {
+            _ if with > without => {
+                format!(
+                    "worse than the base model (the simulation diverges on {with} of them, without the findings on {without})"
+                )
+            }
+            Some([before, after]) if before != after => {
+                format!("worse than the base model (cVDM {before} % to {after} %)")
+            }
+            Some([before, _]) => format!("no better than the base model (cVDM {before} %)"),
+            None => "worse than the base model".to_owned(),
         };
         format!(" Together they predict unseen runs {than}, so that none of them is in the improved model.")
     })
@@ -458,8 +474,10 @@ mod tests {
             both.starts_with("A sensor error, suspected") && both.contains(". Missing physics, suspected"),
             "{both}"
         );
-        assert!(together(Some([76.5, 89.4])).contains("worse than the base model (cVDM 76.5 % to 89.4 %)"));
-        assert!(together(Some([3.301, 3.302])).contains("no better than the base model (cVDM 3.30 %)"));
+        let worse = |diverged, cvdm| together(Some(Worse { diverged, cvdm }));
+        assert!(worse([0; 2], Some([76.5, 89.4])).contains("worse than the base model (cVDM 76.5 % to 89.4 %)"));
+        assert!(worse([0; 2], Some([3.301, 3.302])).contains("no better than the base model (cVDM 3.30 %)"));
+        assert!(worse([1, 16], None).contains("diverges on 16 of them, without the findings on 1)"));
         assert_eq!(together(None), "");
         let with = |grade| Finding { grade, change: Some(0.02), ..current() };
         let refuted = said(Verdict::NotInCatalogue, &[], &[with(Grade::Refuted)], None);

@@ -55,6 +55,19 @@ pub struct GainTest {
 }
 
 impl GainTest {
+    /// The gain of free simulations of so many runs: where one model diverges on more of them than the other, the share of them by which it
+    /// does, for an error without end is larger than any; else the improvement of the mean cVDM.
+    pub(in crate::diagnose) fn of_simulations(
+        diverged: [usize; 2],
+        runs: usize,
+        improvement: Option<f64>,
+        ci95: Option<[f64; 2]>,
+    ) -> Option<Self> {
+        let [before, after] = diverged.map(|count| count as f64);
+        let lost = (before - after) / runs.max(1) as f64;
+        if lost == 0.0 { Some(Self { gain: improvement?, ci95 }) } else { Some(Self { gain: lost, ci95: None }) }
+    }
+
     pub(in crate::diagnose) fn is_above_zero(&self) -> bool {
         self.ci95.is_some_and(|[low, _]| low > 0.0)
     }
@@ -204,6 +217,19 @@ mod tests {
     const BETTER: Option<GainTest> = Some(GainTest { gain: 20.0, ci95: Some([5.0, 35.0]) });
     const UNDECIDED: Option<GainTest> = Some(GainTest { gain: 3.0, ci95: Some([-5.0, 11.0]) });
     const WORSE: Option<GainTest> = Some(GainTest { gain: -9.0, ci95: Some([-15.0, -3.0]) });
+
+    #[test]
+    fn a_model_that_diverges_on_more_runs_is_worse_whatever_it_gains_on_the_others() {
+        let of = |diverged| GainTest::of_simulations(diverged, 8, Some(0.3), Some([0.1, 0.5]));
+        assert_eq!(of([0, 0]), Some(GainTest { gain: 0.3, ci95: Some([0.1, 0.5]) }));
+        assert_eq!(of([2, 2]).map(|g| g.gain), Some(0.3));
+        assert!(of([0, 2]).is_some_and(|g| g.gain == -0.25 && g.is_worse()));
+        assert!(of([8, 0]).is_some_and(|g| g.gain == 1.0 && !g.is_worse() && !g.is_above_zero()));
+        // On all of them: there is no mean error at all.
+        assert!(GainTest::of_simulations([0, 8], 8, None, None).is_some_and(|g| g.is_worse()));
+        assert_eq!(GainTest::of_simulations([8, 8], 8, None, None), None);
+        assert_eq!(grade(&FindingTests { prediction: of([0, 2]), ..sound() }), Grade::Suspected);
+    }
 
     fn sound() -> FindingTests {
         FindingTests {

@@ -68,15 +68,25 @@ pub struct HeldOut {
 }
 
 impl HeldOut {
+    /// Runs on which the free simulation diverges, before and after.
+    pub fn diverged(&self) -> [usize; 2] {
+        [&self.runs_before, &self.runs_after].map(|of| of.iter().filter(|r| r.cvdm.is_none()).count())
+    }
+
+    /// The gain of the free simulation of the held-out runs.
+    fn simulation(&self) -> Option<GainTest> {
+        GainTest::of_simulations(self.diverged(), self.runs, self.improvement, self.ci95)
+    }
+
     /// Whether free simulation of the held-out runs is better after than before.
     pub fn is_better(&self) -> bool {
-        self.improvement.is_some_and(|gain| gain > 0.0)
+        self.simulation().is_some_and(|g| g.gain > 0.0)
     }
 
     /// Whether free simulation of the held-out runs is worse after than before, beyond its interval, or by its sign where there is none: then
     /// no part of what changed is written or confirmed, though each by itself may predict better.
     pub fn is_worse(&self) -> bool {
-        self.improvement.is_some_and(|gain| GainTest { gain, ci95: self.ci95 }.is_worse())
+        self.simulation().is_some_and(|g| g.is_worse())
     }
 }
 

@@ -33,6 +33,8 @@ pub struct FindingProof {
     pub agreement_gain: Option<f64>,
     /// Its 95 % interval, as that of the likelihood.
     pub agreement_ci95: Option<[f64; 2]>,
+    /// Runs on which the free simulation diverges, without and with it.
+    pub diverged: [usize; 2],
     /// Mean cVDM without the finding \[%\].
     pub before: Option<f64>,
     /// Mean cVDM with it \[%\].
@@ -78,6 +80,7 @@ impl FindingProof {
             log_likelihood_ci95: interval_of_sum(&gains),
             agreement_gain: None,
             agreement_ci95: None,
+            diverged: [summary.diverged_baseline, summary.diverged_fitted],
             before: summary.cvdm_baseline.map(|e| e.value),
             after: summary.cvdm_fitted.map(|e| e.value),
             improvement: summary.cvdm_improvement.map(|e| e.value),
@@ -116,7 +119,7 @@ impl FindingProof {
 
     /// The improvement of the free simulation.
     pub fn prediction(&self) -> Option<GainTest> {
-        Some(GainTest { gain: self.improvement?, ci95: self.improvement_ci95 })
+        GainTest::of_simulations(self.diverged, self.runs, self.improvement, self.improvement_ci95)
     }
 }
 

@@ -59,7 +59,14 @@ fn models(d: &Diagnosis) -> Vec<String> {
             distance(s.speed, 1.0, "speed", "m/s"),
         ];
         let errors: Vec<String> = errors.into_iter().flatten().collect();
-        format!("{}: mean error {}; cVDM {} %", name(s.model), errors.join(", "), sig(s.cvdm, 3))
+        let errors = s.cvdm.map(|cvdm| format!("mean error {}; cVDM {} %", errors.join(", "), sig(cvdm, 3)));
+        let diverged = (s.diverged > 0).then(|| format!("diverges on {}", number_of(s.diverged, "test run")));
+        let parts: Vec<String> = errors.into_iter().chain(diverged).collect();
+        format!(
+            "{}: {}",
+            name(s.model),
+            if parts.is_empty() { "another model diverges on every test run".to_owned() } else { parts.join("; ") }
+        )
     };
     let mut lines: Vec<String> = d.models.iter().map(line).collect();
     if d.written == Whose::Own {
