@@ -209,10 +209,7 @@ fn report(
         holds: answer.base.holds,
         form_holds: tests.search.chance.form_holds,
         missing: missing.as_ref(),
-        worse: proof.as_ref().filter(|p| p.is_worse()).map(|p| Worse {
-            diverged: p.diverged(),
-            cvdm: p.before.zip(p.after).map(|(before, after)| [before, after]),
-        }),
+        worse: proof.as_ref().filter(|p| p.is_worse()).map(Worse::from),
     };
     Diagnosis {
         schema: "trimtab-diagnosis/2",

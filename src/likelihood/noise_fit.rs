@@ -5,7 +5,9 @@ use super::covariance::{Discrete, Measurement, Z, correct, correct_twice, initia
 use super::filter::{Tangent, boost};
 use super::noise::{GROUP_OF, NOISE_PARAMETERS, Noise, NoisePrior, NoiseScore, SensorNoise};
 use super::optimise::{Outcome, Proposal};
-use super::settings::{COLOURED_GUESS, COLOURED_PERIODS, EXACT_SENSOR, FORCE_GUESS, NOISE_DAMPING, NOISE_STEP_LONGEST};
+use super::settings::{
+    COLOURED_GUESS, COLOURED_PERIODS, EXACT_SENSOR, FORCE_GUESS, LITTLE_FORCE, NOISE_DAMPING, NOISE_STEP_LONGEST,
+};
 use crate::model::Model;
 use crate::recording::{Run, or_nan};
 use crate::state::STATES;
@@ -411,6 +413,11 @@ pub fn guess(runs: &[Run], model: &Model) -> Noise {
         force: [mass * acceleration, 2.0 * mass * acceleration, 0.3 * mass * acceleration * l],
         force_time: 0.5 * l / (0.2 * speed) + 3.0 * dt,
     }
+}
+
+/// The guess for a second start: with a small unknown force the model has to follow the recordings by itself.
+pub fn little_force(guess: &Noise) -> Noise {
+    Noise { force: guess.force.map(|force| LITTLE_FORCE * force), ..*guess }
 }
 
 #[cfg(test)]

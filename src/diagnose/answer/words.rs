@@ -9,6 +9,7 @@ use crate::diagnose::law::Law;
 use crate::diagnose::proof::finding::{Amplitude, Finding, GENERIC, PUSH};
 use crate::diagnose::proof::grade::{Grade, LawGrade};
 use crate::diagnose::proof::influence::Following;
+use crate::diagnose::proof::prove::HeldOut;
 use crate::diagnose::proof::unseen::FindingProof;
 use crate::diagnose::search::decide::Verdict;
 use crate::diagnose::settings::{BENT, BEYOND_DOUBT, FEWEST_RECORDINGS, GUST_SHARE};
@@ -383,6 +384,13 @@ pub struct Worse {
     pub diverged: [usize; 2],
     /// cVDM \[%\] of each, where there are runs on which neither diverges.
     pub cvdm: Option<[f64; 2]>,
+}
+
+impl From<&HeldOut> for Worse {
+    fn from(proof: &HeldOut) -> Self {
+        let cvdm = proof.before.zip(proof.after).map(|(before, after)| [before, after]);
+        Self { diverged: proof.diverged(), cvdm }
+    }
 }
 
 /// That all findings together predict unseen runs worse, where they do.

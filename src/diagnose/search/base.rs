@@ -9,8 +9,8 @@ use crate::diagnose::settings::{
 };
 use crate::fit::backwards::{Estimated, backwards, unequal};
 use crate::likelihood::estimate::{Estimate, estimate, left_to_gain, log_posterior, passes};
-use crate::likelihood::noise::NoisePrior;
-use crate::likelihood::noise_fit::guess;
+use crate::likelihood::noise::{Noise, NoisePrior};
+use crate::likelihood::noise_fit::{guess, little_force};
 use crate::likelihood::parameters::base_parameters;
 use crate::model::{Model, ModelError};
 use crate::recording::audit::{Issue, Severity, settled};
@@ -85,7 +85,12 @@ impl BaseFit {
         let free = base_parameters(&question.full, question.settings.nuisance);
         let first_noise = guess(&kept, &question.full);
         let prior = NoisePrior::around(&first_noise);
-        let fit = |runs: &[Run]| estimate(&question.full, integration, runs, &free, &first_noise, &prior, FIRST);
+        let fit = |runs: &[Run]| {
+            let from = |noise: &Noise| estimate(&question.full, integration, runs, &free, noise, &prior, FIRST);
+            let density = |e: &Estimate| e.log_posterior + prior.log_density(&e.noise.to_log());
+            let [first, second] = [first_noise, little_force(&first_noise)].map(|noise| from(&noise));
+            if density(&second) > density(&first) { second } else { first }
+        };
         let mut base = fit(&kept);
         let filtered = |base: &Estimate, runs: &[Run]| passes(&base.model, integration, &[], runs, &base.noise, false);
         let mut at = filtered(&base, &kept);
@@ -116,8 +121,8 @@ impl BaseFit {
             let solved = problem.written(estimate);
             if solved.log_posterior > estimate.log_posterior {
                 self.estimate = problem.again(&solved, SETTLE);
-                self.within = Some(solved);
             }
+            self.within = Some(solved);
         }
         self
     }
@@ -237,6 +242,18 @@ mod tests {
         let base = BaseFit::new(&question(&model, &settings), AuditedRuns::new(runs, 85.0));
         assert!(is_euler(base.admission.euler_gain), "{}", base.admission.euler_gain);
         assert_eq!((base.integration, base.admission.integration), (EULER, EULER));
+    }
+
+    #[test]
+    fn the_base_is_the_better_of_its_two_starts() {
+        let (model, settings) = (model(), Settings::default());
+        let base = BaseFit::new(&question(&model, &settings), AuditedRuns::new(runs(&model, 6), model.ship.hull.lpp));
+        let (free, first) = (base_parameters(&model, true), guess(&base.runs, &model));
+        let density = |e: &Estimate| e.log_posterior + base.prior.log_density(&e.noise.to_log());
+        for noise in [first, little_force(&first)] {
+            let one = estimate(&model, base.integration, &base.runs, &free, &noise, &base.prior, FIRST);
+            assert!(density(&base.estimate) >= density(&one) - LEFT_TO_GAIN);
+        }
     }
 
     #[test]

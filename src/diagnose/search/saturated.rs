@@ -12,7 +12,7 @@ use crate::diagnose::evidence::generic::GenericLaw;
 use crate::diagnose::evidence::wald::Wald;
 use crate::diagnose::law::sparse::select;
 use crate::diagnose::settings::{
-    INDISTINGUISHABLE, PARAMETER_PRICE, REFIT, REMAINDER, RIVAL_GAP, RIVALS, SENSOR_SPREAD, SETTLE,
+    IDENTIFIABLE_SHARE, INDISTINGUISHABLE, PARAMETER_PRICE, REFIT, REMAINDER, RIVAL_GAP, RIVALS, SENSOR_SPREAD, SETTLE,
 };
 use crate::likelihood::estimate::{Estimate, FreeParameter, Sums, base_of, restrictions};
 use crate::likelihood::evidence::chi_squared_p;
@@ -108,17 +108,22 @@ impl Saturated {
 
 /// By how much in log-likelihood an error that a refit found explains the recordings better than any law of a force in its place, both under
 /// the noise of that refit: what a force may explain as well is no evidence for a sensor. The law has the monomials that the recordings ask for,
-/// and is refitted; parameters pay their price.
+/// and is refitted; parameters pay their price. Nought for an error that the ship's own parameters can take over.
 pub fn over_any_force(found: &Estimate, candidate: usize, extent: &Extent, problem: Problem) -> f64 {
     let Problem { candidates, integration, runs, .. } = problem;
     let c = &candidates[candidate];
     let (model, free) = c.removed(found, extent);
     let base = problem.estimate(&model, &free, &found.noise, REFIT);
     let mut columns: Vec<Column> = free.iter().map(|f| f.column).collect();
+    let own: Vec<usize> = (columns.len()..columns.len() + c.columns.len()).collect();
+    columns.extend(&c.columns);
     let law = GenericLaw::append(&mut columns, &base.model);
     let filter = Filter::new(&base.model, integration, &columns);
     let evidence = Sums::of(&filter, runs, &found.noise, &restrictions(&free), false).evidence;
     let block = base_of(&evidence, &base.model, &free);
+    if evidence.test(&block, &own).retained < IDENTIFIABLE_SHARE {
+        return 0.0;
+    }
     let recordings: Vec<&str> = runs.iter().map(|r| r.recording.as_str()).collect();
     let chosen = select(&evidence, &block, &law.columns(), &recordings);
     let few =

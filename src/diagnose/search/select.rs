@@ -108,6 +108,7 @@ impl Selection {
         let screen = screen(&again[0], problem.integration, problem.runs, problem.candidates);
         self.tests.screen = screen;
         [self.tests.fit.estimate, self.estimate] = again;
+        self.tests.fit.within = None;
     }
 
     /// Compares every mechanism from outside the ship again, beside those that were found after it: what it explained alone,
