@@ -142,6 +142,7 @@ pub fn erring_as(model: &Model, errors: &[(&str, f64)], count: usize) -> Vec<Run
         for (m, input) in run.measured.iter_mut().zip(&run.inputs) {
             *m = dynamics.report(&m.map(Option::unwrap), input).map(Some);
         }
+        run.initial = dynamics.report(&run.initial, &run.inputs[0]);
     }
     runs
 }
