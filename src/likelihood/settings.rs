@@ -136,7 +136,7 @@ numbers! {
     FORCE_GUESS: f64 = 0.01, CUSTOM;
     /// The unknown force of a second start, as a share of that guess: with a large force the filter follows the recordings whatever the model, and
     /// with a small one the model has to; each has an optimum of its own where the other may miss it.
-    LITTLE_FORCE: f64 = 0.1, "a tanker of an outside simulator, sound: the first start ends 197 units of log-likelihood lower, starts with 0.1, 10, 100 and 1000 times the force within 15 of each other";
+    LITTLE_FORCE: f64 = 0.1, "a tanker of an outside simulator, sound: the first start ends 195 units of log-likelihood lower; starts with 0.1, 10, 100 and 1000 times the force end within 16 of each other";
     /// Prior standard deviation of the logarithm of a sensor noise's size: a factor of about 4.
     NOISE_SIZE_SPREAD: f64 = 1.4, SEEDS;
     /// Prior standard deviation of the logarithm of a white noise below its first guess: a smoothed sensor is not exact.

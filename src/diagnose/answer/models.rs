@@ -4,7 +4,7 @@
 //! The improved model that is written never simulates the unseen runs worse than the model that the study came with: it diverges on no more of
 //! them, and where on as many its mean cVDM is no larger.
 
-use crate::diagnose::proof::prove::RunScore;
+use crate::diagnose::proof::prove::{RunScore, diverged};
 use crate::state::STATES;
 use crate::statistics::mean;
 use serde::Serialize;
@@ -55,7 +55,7 @@ pub fn on_unseen(models: &[(Whose, &[RunScore])]) -> Vec<OnUnseen> {
         OnUnseen {
             model: *whose,
             runs: judged.len(),
-            diverged: of.iter().filter(|score| score.cvdm.is_none()).count(),
+            diverged: diverged(of),
             cvdm: mean(kept().filter_map(|score| score.cvdm)),
             position: channel(&|md| Some(md[0]?.hypot(md[1]?))),
             heading: channel(&|md| md[2]),

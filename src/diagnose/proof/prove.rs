@@ -67,10 +67,15 @@ pub struct HeldOut {
     pub runs_after: Vec<RunScore>,
 }
 
+/// Runs on which a simulation diverged.
+pub fn diverged(scores: &[RunScore]) -> usize {
+    scores.iter().filter(|score| score.cvdm.is_none()).count()
+}
+
 impl HeldOut {
     /// Runs on which the free simulation diverges, before and after.
     pub fn diverged(&self) -> [usize; 2] {
-        [&self.runs_before, &self.runs_after].map(|of| of.iter().filter(|r| r.cvdm.is_none()).count())
+        [&self.runs_before, &self.runs_after].map(|of| diverged(of))
     }
 
     /// The gain of the free simulation of the held-out runs.

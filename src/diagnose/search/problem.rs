@@ -8,6 +8,7 @@ use crate::fit::within_limits;
 use crate::likelihood::estimate::{Estimate, FreeParameter, estimate};
 use crate::likelihood::noise::{Noise, NoisePrior};
 use crate::model::Model;
+use crate::physics::Kind;
 use crate::recording::Run;
 use crate::simulate::Integration;
 
@@ -30,6 +31,16 @@ impl Problem<'_> {
     /// Estimates free parameters and noise from where a model is.
     pub fn estimate(&self, model: &Model, free: &[FreeParameter], noise: &Noise, effort: Effort) -> Estimate {
         estimate(model, self.integration, self.runs, free, noise, self.prior, effort)
+    }
+
+    /// The errors of sensors among the candidates of which nothing is free in an estimate yet.
+    pub fn sensor_errors(&self, current: &Estimate) -> Vec<usize> {
+        let is_free = |parameter: usize| current.free.iter().any(|f| f.column.parameter == parameter);
+        let may_be = |i: &usize| {
+            let c = &self.candidates[*i];
+            c.mechanism.kind == Kind::Sensor && !c.columns.iter().any(|c| is_free(c.parameter))
+        };
+        (0..self.candidates.len()).filter(may_be).collect()
     }
 
     /// Estimates again from where an estimate is.

@@ -10,7 +10,6 @@ use crate::diagnose::settings::TOGETHER_EFFORT;
 use crate::likelihood::estimate::{Estimate, FreeParameter, log_posterior};
 use crate::likelihood::noise::Noise;
 use crate::model::Model;
-use crate::physics::Kind;
 use nalgebra::DVector;
 
 /// The error of a sensor that stands out most beside all others, with a model and a noise that a refit can start from.
@@ -75,12 +74,7 @@ pub fn leading(current: &Estimate, problem: Problem, beside: Beside) -> Vec<Lead
 /// of sensors compared.
 fn shown(current: &Estimate, problem: Problem, beside: Beside) -> Vec<(usize, Extent, Disagreement)> {
     let Problem { runs, candidates, settings, .. } = problem;
-    let is_free = |parameter: usize| current.free.iter().any(|f| f.column.parameter == parameter);
-    let may_be = |i: &usize| {
-        let c = &candidates[*i];
-        c.mechanism.kind == Kind::Sensor && !c.columns.iter().any(|c| is_free(c.parameter))
-    };
-    let sensors: Vec<usize> = (0..candidates.len()).filter(may_be).collect();
+    let sensors = problem.sensor_errors(current);
     let all: Vec<&Candidate> = sensors.iter().map(|i| &candidates[*i]).collect();
     let extent = |d: &Disagreement| if d.sessions.is_empty() { Extent::All } else { Extent::Each(d.sessions.clone()) };
     let errors = disagreements(&current.model, runs, &all, settings.alpha).unwrap_or_default();

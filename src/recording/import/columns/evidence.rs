@@ -185,7 +185,7 @@ pub fn direction(
         let heading = Signal::new(columns, verdict.factor, verdict.offset, true).0;
         let steady = known.track.as_ref().and_then(|track| track.steady_angle(&heading));
         let warning = steady.filter(|angle| angle.abs() > STEADY).map(steady_words);
-        verdict.doubt = [verdict.doubt.take(), warning].into_iter().flatten().reduce(|a, b| format!("{a}; {b}"));
+        verdict.doubt = both(verdict.doubt.take(), warning);
     }
     Ok(verdict)
 }
@@ -377,7 +377,7 @@ pub fn rudder(meaning: Meaning, columns: &[&Column], given: Option<&Given>, know
                 Some("the recordings do not determine its sign: positive must turn the ship to starboard".to_owned());
         }
     }
-    verdict.doubt = [verdict.doubt.take(), side].into_iter().flatten().reduce(|a, b| format!("{a}; {b}"));
+    verdict.doubt = both(verdict.doubt.take(), side);
     if let Some(given) = given.filter(|g| !g.by_user && g.factor < 0.5 && too_little) {
         let doubt = format!(
             "the file says {}, and {} of them turn the ship through {} deg: if the values are radians, pass `--unit {}=rad`",
@@ -389,6 +389,11 @@ pub fn rudder(meaning: Meaning, columns: &[&Column], given: Option<&Given>, know
         verdict.doubt = Some(verdict.doubt.take().map_or(doubt.clone(), |sign| format!("{doubt}; {sign}")));
     }
     Ok(verdict)
+}
+
+/// Two doubts of one column, where there are two.
+fn both(first: Option<String>, second: Option<String>) -> Option<String> {
+    first.into_iter().chain(second).reduce(|a, b| format!("{a}; {b}"))
 }
 
 /// Whether numbers are more than the degrees of any rudder, in more than stray ones, and no more than 100 per cent.
@@ -468,7 +473,7 @@ pub fn rotation(
         ));
     }
     let unsigned = astern_unsigned(columns, top, known);
-    verdict.doubt = [unsigned, verdict.doubt.take()].into_iter().flatten().reduce(|a, b| format!("{a}; {b}"));
+    verdict.doubt = both(unsigned, verdict.doubt.take());
     Ok(verdict)
 }
 
