@@ -3,6 +3,7 @@
 
 use super::answer::analysis::Answer;
 use super::answer::calibrate::ErrorRates;
+use super::answer::cause::causes;
 use super::answer::diagnosis::{Diagnosis, Trace};
 use super::answer::models::{OnUnseen, Whose, on_unseen, written};
 use super::answer::sailed::{Sailed, sailed};
@@ -144,10 +145,11 @@ fn visited(law: Law, traces: &[Trace]) -> Law {
 fn file(
     question: &Question,
     fit: &BaseFit,
-    kept: &Estimate,
+    fits: &Written,
     adds: bool,
     models: &[OnUnseen],
 ) -> (Whose, Model, Option<Uncertainty>) {
+    let kept = if adds { &fits.found } else { &fits.base };
     let whose = written(if adds { Whose::Improved } else { Whose::Base }, models);
     if whose == Whose::Own {
         return (whose, question.model.clone(), None);
@@ -192,13 +194,15 @@ fn report(
     // What predicts unseen runs worse than the base model is no improvement, however significant its parts are.
     let worse = proof.as_ref().is_some_and(HeldOut::is_worse);
     let adds = answer.improves() && !worse;
-    let kept = if adds { &fits.found } else { &fits.base };
-    let (file, improved, uncertainty) = file(question, fit, kept, adds, &models);
+    let (file, improved, uncertainty) = file(question, fit, fits, adds, &models);
     let traces = traces(&fit.runs, fit.integration, base, last.map(|_| found));
     let verdict = answer.verdict;
     let hull_budget = budget(found);
+    let planned = || next_trial(verdict, &answer.findings, &tests.candidates);
     let (differing, recordings) = apart(verdict, &tests.location.windows, &fit.runs);
+    let causes = causes(tests, &differing, question.settings);
     let said = Said {
+        causes: &causes,
         hull: &hull_budget,
         windows: &tests.location.windows,
         differing: &differing,
@@ -215,10 +219,7 @@ fn report(
         schema: "trimtab-diagnosis/2",
         verdict,
         headline: headline(verdict, &said),
-        next_trial: missing
-            .as_ref()
-            .map(Missing::next_trial)
-            .or_else(|| next_trial(verdict, &answer.findings, &tests.candidates)),
+        next_trial: missing.as_ref().map(Missing::next_trial).or_else(planned),
         law: answer.law.clone().map(|law| visited(law, &traces)),
         admission: fit.admission.clone(),
         noise_before: base.noise,
@@ -252,6 +253,7 @@ fn report(
         findings: answer.findings,
         withdrawn: answer.withdrawn,
         differing: differing.into_iter().map(str::to_owned).collect(),
+        causes,
     }
 }
 

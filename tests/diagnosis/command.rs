@@ -111,6 +111,7 @@ fn no_key_is_explained_that_the_document_cannot_have() {
         "ranking[].sessions",
         "withdrawn[]",
         "differing[]",
+        "causes[]",
         "error_rates",
     ];
     for (key, _) in keys() {

@@ -2,6 +2,7 @@
 //! It computes nothing; the steps that fill it are in other files.
 
 use super::calibrate::ErrorRates;
+use super::cause::Cause;
 use super::models::{OnUnseen, Whose};
 use super::sailed::Sailed;
 use crate::diagnose::evidence::admit::Admission;
@@ -169,6 +170,8 @@ pub struct Diagnosis {
     /// One or two recordings in which forces act that the model does not have and no other shows, where nothing is named.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub differing: Vec<String>,
+    /// What acts in them alone, where something of the catalogue explains them.
+    pub causes: Vec<Cause>,
     /// Whether the answer is the same on transformed recordings; absent where nothing was found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stability: Option<Stability>,

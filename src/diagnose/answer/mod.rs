@@ -4,6 +4,7 @@
 //! | file | what |
 //! |---|---|
 //! | `analysis` | one analysis with its verdict, and its repetition on transformed recordings |
+//! | [`cause`] | what acts in a recording that differs from all others |
 //! | `conclude` | the verdict, a pure function of grades and tests |
 //! | [`calibrate`] | error rates on simulated recordings |
 //! | [`models`] | the study's own model, the base and the improved one on unseen runs, and which is written |
@@ -13,6 +14,7 @@
 
 pub(super) mod analysis;
 pub mod calibrate;
+pub mod cause;
 mod conclude;
 pub mod diagnosis;
 pub mod models;

@@ -1,6 +1,7 @@
 //! The verdict in one sentence, and the trial to sail next.
 //! It says what was decided and decides nothing.
 
+use super::cause::Cause;
 use super::diagnosis::{Budget, NextTrial};
 use crate::diagnose::evidence::candidate::Candidate;
 use crate::diagnose::evidence::place::Place;
@@ -127,6 +128,8 @@ pub struct Said<'a> {
     pub windows: &'a [Window],
     /// Those of the recordings that differ from all others, see [`differing`].
     pub differing: &'a [&'a str],
+    /// What explains them, where something does.
+    pub causes: &'a [Cause],
     /// Recordings that were looked at.
     pub recordings: usize,
 }
@@ -196,11 +199,22 @@ fn but_for(said: &Said) -> String {
     let named = names.iter().map(when).collect::<Vec<_>>().join(" and ");
     let (verb, log, its) =
         if names.len() == 1 { ("differs", "that log", "its") } else { ("differ", "those logs", "their") };
+    let because: String = names.iter().map(|name| because(name, said.causes)).collect();
     format!(
-        " But {named} {verb}: forces act there that the model does not have and the other {} do not show (p < {BEYOND_DOUBT:e}). Look at {log}: \
+        " But {named} {verb}: forces act there that the model does not have and the other {} do not show (p < {BEYOND_DOUBT:e}).{because} Look at {log}: \
          {its} rudder angle, propeller rate or clock may not be what acted, or something touched the ship; leave it out and compare.",
         number_of(said.recordings - names.len(), "recording")
     )
+}
+
+/// What explains a recording that differs from the others.
+fn because(recording: &str, causes: &[Cause]) -> String {
+    let Some(c) = causes.iter().find(|c| c.recording == recording) else {
+        return format!(" Nothing of the catalogue explains `{recording}` better than constant forces in it.");
+    };
+    let size = values(c.mechanism, &c.parameters);
+    let alike = if c.alike.is_empty() { String::new() } else { format!(", and {} as well", c.alike.join(", ")) };
+    format!(" In `{recording}` alone, {} ({size}) explains it best{alike}.", c.title)
 }
 
 /// That the fit needs a coefficient of the ship that no such ship has: what acts the same in all recordings may be in it.
@@ -241,14 +255,18 @@ fn nothing(said: &Said) -> String {
             let change = 100.0 * f.change.unwrap_or(0.0);
             format!("is measurable, and changes predictions by {} % of their error", sig(change, 2))
         };
-        return format!("Nothing is missing that matters: {} ({}) {why}.", f.title, values(f));
+        return format!(
+            "Nothing is missing that matters: {} ({}) {why}.",
+            f.title,
+            values(&f.mechanism, &f.parameters)
+        );
     }
     if let Some(f) = withdrawn(Grade::EulerSteps) {
         return format!(
             "Nothing is missing that can be named: {} ({}) would explain the recordings, and so would explicit Euler steps of one sample \
              period in the program that made them, or values held until the next sample.",
             f.title,
-            values(f)
+            values(&f.mechanism, &f.parameters)
         );
     }
     "Nothing is missing that these data could show.".into()
@@ -289,9 +307,9 @@ fn not_followed(f: &Following) -> String {
 fn titled(f: &Finding) -> String {
     let size = match f.sessions.as_slice() {
         all if f.by_session => format!("a different value in each of {} sessions", all.len()),
-        [] => values(f),
-        [one] => format!("{}, only in {one}", values(f)),
-        some => format!("{}, only in {} sessions", values(f), some.len()),
+        [] => values(&f.mechanism, &f.parameters),
+        [one] => format!("{}, only in {one}", values(&f.mechanism, &f.parameters)),
+        some => format!("{}, only in {} sessions", values(&f.mechanism, &f.parameters), some.len()),
     };
     let grade = match f.grade {
         Grade::Confirmed if f.held_out.is_none() => "shown by the recordings themselves",
@@ -333,13 +351,13 @@ fn refuted(f: &Finding) -> String {
 }
 
 /// The parameters of a finding; a vector fixed on the earth by its size and direction.
-fn values(f: &Finding) -> String {
-    if let [north, east] = f.parameters.as_slice()
+fn values(mechanism: &str, parameters: &[Amplitude]) -> String {
+    if let [north, east] = parameters
         && north.name.ends_with(".north")
         && east.name.ends_with(".east")
     {
         let towards = east.value.atan2(north.value).to_degrees().rem_euclid(360.0);
-        let (word, angle) = match f.mechanism.as_str() {
+        let (word, angle) = match mechanism {
             "mean_wind" | "wave_drift" => ("from", (towards + 180.0).rem_euclid(360.0)),
             "compass_deviation" => ("on a heading of", towards),
             _ => ("toward", towards),
@@ -350,8 +368,8 @@ fn values(f: &Finding) -> String {
     let unit = |p: &Amplitude| if p.unit == "-" { String::new() } else { format!(" {}", p.unit) };
     let one = |p: &Amplitude| format!("{} = {}{}", p.name, sig(p.value, 3), unit(p));
     let undetermined = |p: &Amplitude| p.ci95[0] <= 0.0 && p.ci95[1] >= 0.0;
-    let all = f.parameters.iter().map(one).collect::<Vec<_>>().join(", ");
-    if f.parameters.iter().all(undetermined) { format!("{all}, which the recordings do not determine") } else { all }
+    let all = parameters.iter().map(one).collect::<Vec<_>>().join(", ");
+    if parameters.iter().all(undetermined) { format!("{all}, which the recordings do not determine") } else { all }
 }
 
 /// What is named, forces of the ship and errors of sensors each for themselves, the leading kind first.
@@ -427,7 +445,7 @@ fn one_of(f: &Finding) -> String {
     let windows: Vec<String> = f.windows.iter().map(one).collect();
     format!(
         "A force acts for a limited time: {} in {}; it is a push, or the ship's own forces in a state that no other recording visits.",
-        values(f),
+        values(&f.mechanism, &f.parameters),
         windows.join(" and ")
     )
 }
@@ -456,6 +474,7 @@ mod tests {
                     hull: &[],
                     windows: &[],
                     differing: &[],
+                    causes: &[],
                     recordings: 9,
                 },
             )
@@ -550,6 +569,7 @@ mod tests {
             hull: &[],
             windows: &one,
             differing: &differing(&one, 24),
+            causes: &[],
             recordings: 24,
         };
         for verdict in [Verdict::NothingMissing, Verdict::Random] {
