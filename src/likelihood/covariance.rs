@@ -213,11 +213,16 @@ fn moved<S: Scalar>(p: &Square<S>, a: &[[S; STATES]; STATES], gamma: &[[S; 3]; S
         for from in (0..Z).step_by(WIDE) {
             let mut sums = [[S::zero(); WIDE]; 2];
             (0..2).for_each(|r| (0..WIDE).for_each(|c| sums[r][c] = out[i + r][from + c]));
-            let mut add = |l: usize, factors: [S; 2]| {
-                (0..2).for_each(|r| (0..WIDE).for_each(|c| sums[r][c] += rows[l][from + c] * factors[r]));
-            };
-            (0..4).for_each(|l| add(l, [a[i][2 + l], a[i + 1][2 + l]]));
-            (0..3).for_each(|l| add(4 + l, [gamma[i][l], gamma[i + 1][l]]));
+            // Loops and no closures: a compiler that does not inline one keeps its sums in memory.
+            for (l, row) in rows.iter().enumerate() {
+                let factors =
+                    if l < 4 { [a[i][2 + l], a[i + 1][2 + l]] } else { [gamma[i][l - 4], gamma[i + 1][l - 4]] };
+                for (sums, factor) in sums.iter_mut().zip(factors) {
+                    for (sum, p) in sums.iter_mut().zip(&row[from..from + WIDE]) {
+                        *sum += *p * factor;
+                    }
+                }
+            }
             (0..2).for_each(|r| (0..WIDE).for_each(|c| out[i + r][from + c] = sums[r][c]));
         }
     }

@@ -5,12 +5,13 @@ use crate::diagnose::evidence::candidate::Candidate;
 use crate::diagnose::settings::{Effort, REFIT, Settings};
 #[cfg(feature = "ipopt")]
 use crate::fit::within_limits;
-use crate::likelihood::estimate::{Estimate, FreeParameter, estimate};
+use crate::likelihood::estimate::{Estimate, FreeParameter, estimate, log_posterior, moved};
 use crate::likelihood::noise::{Noise, NoisePrior};
 use crate::model::Model;
 use crate::physics::Kind;
 use crate::recording::Run;
 use crate::simulate::Integration;
+use nalgebra::DVector;
 
 /// What every refit shares.
 #[derive(Clone, Copy)]
@@ -53,15 +54,32 @@ impl Problem<'_> {
     pub fn inside_bounds(&self, estimate: &Estimate) -> Estimate {
         let mut found = estimate.clone();
         loop {
-            let (outside, free): (Vec<FreeParameter>, Vec<FreeParameter>) =
-                found.free.iter().cloned().partition(|f| is_outside(f, &found.model));
-            if outside.is_empty() {
+            let free: Vec<FreeParameter> =
+                found.free.iter().filter(|f| !is_outside(f, &found.model)).cloned().collect();
+            if free.len() == found.free.len() {
                 return found;
             }
-            let mut model = found.model.clone();
-            outside.iter().for_each(|f| put_inside(f, &mut model));
-            found = self.estimate(&model, &free, &found.noise, REFIT);
+            found = self.estimate(&self.moved_inside(&found), &free, &found.noise, REFIT);
         }
+    }
+
+    /// The model with what is outside its bounds moved to them, and the rest moved along: `I_rr d_r = -I_ro d_o`, where the information I of what
+    /// moves (o) and of the rest (r) gives the most likely values of the rest beside those of the others. Where that is no better, the rest stays.
+    fn moved_inside(&self, found: &Estimate) -> Model {
+        let Estimate { model, free, noise, .. } = found;
+        let (out, rest): (Vec<usize>, Vec<usize>) = (0..free.len()).partition(|i| is_outside(&free[*i], model));
+        let mut alone = model.clone();
+        out.iter().for_each(|i| put_inside(&free[*i], &mut alone));
+        let moves = out.iter().map(|i| (free[*i].value(&alone) - free[*i].value(model)) / free[*i].column.scale);
+        let moves = DVector::from_iterator(out.len(), moves);
+        let of_rest = found.information(self.integration, self.runs).select_rows(&rest);
+        let Some(factor) = of_rest.select_columns(&rest).cholesky() else { return alone };
+        let along = factor.solve(&-(of_rest.select_columns(&out) * moves));
+        let rest: Vec<FreeParameter> = rest.into_iter().map(|i| free[i].clone()).collect();
+        let together = moved(&alone, &rest, &along);
+        let [one, all] =
+            [&alone, &together].map(|model| log_posterior(model, self.integration, self.runs, free, noise));
+        if all > one { together } else { alone }
     }
 
     /// An estimate as it is written to a file: a fit by likelihood through Ipopt, within bounds and constraints, of all its parameters;
@@ -103,7 +121,7 @@ mod tests {
     use super::*;
     use crate::diagnose::evidence::candidate::candidates;
     use crate::diagnose::example::{RK4, at, column, model, runs};
-    use crate::diagnose::settings::SETTLE;
+    use crate::diagnose::settings::{AS_IT_IS, SETTLE};
     use crate::model::Prior;
 
     #[test]
@@ -133,5 +151,24 @@ mod tests {
         assert!(reached <= p.upper && reached > p.upper - 1e-3 * p.scale, "{reached} {}", p.upper);
         let lift = |e: &Estimate| free[1].value(&e.model);
         assert!((lift(&written) - lift(&inside)).abs() < 0.02 * lift(&inside).abs() && written.free.len() == 2);
+    }
+
+    #[test]
+    fn what_is_tied_to_a_coefficient_moves_along_with_it_to_its_bound() {
+        let (m, settings) = (model(), Settings::default());
+        let (list, prior, runs) = (candidates(&m, &[]), NoisePrior::around(&at(&m).noise), runs(&m, 6));
+        let problem = Problem { integration: RK4, runs: &runs, candidates: &list, prior: &prior, settings: &settings };
+        let damping = column(&m, "hull.Nrr");
+        let free = ["hull.Nrr", "hull.Nr", "rudder.lift1"].map(|name| FreeParameter::common(column(&m, name), None));
+        let mut narrow = m.clone();
+        let p = &mut narrow.parameters[damping.parameter];
+        p.upper = p.value - 0.1 * p.value.abs();
+        let upper = p.upper;
+        let outside = problem.estimate(&narrow, &free, &at(&m).noise, AS_IT_IS);
+        let (together, mut alone) = (problem.moved_inside(&outside), narrow.clone());
+        put_inside(&free[0], &mut alone);
+        let value = |model: &Model| log_posterior(model, RK4, &runs, &free, &at(&m).noise);
+        assert_eq!(together.parameters[damping.parameter].value, upper);
+        assert!(value(&together) > value(&alone) + 1.0, "{} {}", value(&together), value(&alone));
     }
 }

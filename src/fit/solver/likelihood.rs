@@ -53,6 +53,9 @@ const SHORT: [(usize, usize); 2] = [(3, 4), (6, 16)];
 /// gain is lost when the gains are renewed.
 const CLOSE: usize = 4;
 
+/// The same in the first round of a solve that begins near the optimum without multipliers: these have to be found first.
+const FIRST_CLOSE: usize = 3 * CLOSE;
+
 /// Rise of the log-posterior in a round below which gains and noise are settled: less than a third of a likelihood unit turns no comparison.
 const SETTLED: f64 = 0.3;
 
@@ -250,16 +253,17 @@ impl<'t> Task<'t> {
         shared: &mut Shared,
     ) -> Result<Descent, FitError> {
         let descent = self.with_noise(posterior, priors, short, rounds, shared)?;
-        self.with_gains(posterior, priors, descent, rounds, shared)
+        self.with_gains(posterior, priors, descent, LEFT, rounds, shared)
     }
 
-    /// Rounds of gains and parameters with the noise as it is, until the objective falls no more. A measurement that is no outlier to the new gains
+    /// Rounds of gains and parameters with the noise as it is, until the objective falls by less than `left`. A measurement that is no outlier to the new gains
     /// comes back, so that a round may fall by more than the one before.
     fn with_gains(
         &self,
         posterior: &Posterior,
         priors: &Priors,
         mut descent: Descent,
+        left: f64,
         rounds: &mut Rounds,
         shared: &mut Shared,
     ) -> Result<Descent, FitError> {
@@ -275,7 +279,7 @@ impl<'t> Task<'t> {
             }
             rounds.reached = Reached { p: next.p.clone(), noise, value };
             descent = next;
-            if fall < LEFT {
+            if fall < left {
                 break;
             }
         }
@@ -297,7 +301,8 @@ impl<'t> Task<'t> {
         loop {
             round += 1;
             let far = short.iter().find(|(until, _)| round <= *until).map(|(_, most)| *most);
-            let most = far.or(rounds.near.then_some(CLOSE));
+            let close = if rounds.multipliers.is_none() && round == 1 { FIRST_CLOSE } else { CLOSE };
+            let most = far.or(rounds.near.then_some(close));
             let (mut descent, fall) = self.round(posterior, priors, most, rounds, shared)?;
             let Reached { noise, value: before, .. } = &rounds.reached;
             let next = posterior.reached(&descent.p, noise);
@@ -375,7 +380,7 @@ fn priors(free: &[FreeParameter]) -> Priors {
 }
 
 /// An estimate as a fit by likelihood ends: from where it is solved through Ipopt within the bounds of all its parameters, sums with what
-/// sessions add among them, and within the constraints; noise and gains in turn.
+/// sessions add among them, and within the constraints; noise and gains in turn, until neither gains what could turn a comparison.
 ///
 /// # Errors
 /// As [`super::fit`]; an estimate that no step improves is none.
@@ -408,7 +413,8 @@ pub(crate) fn within_limits(
     let value = posterior.log_density(&task.start, &found.noise);
     let reached = Reached { p: task.start.clone(), noise: found.noise, value };
     let mut rounds = Rounds { reached, multipliers: None, near: true, count: 0 };
-    let end = task.settled(&posterior, &priors, &[], &mut rounds, &mut shared)?;
+    let end = task.with_noise(&posterior, &priors, &[], &mut rounds, &mut shared)?;
+    let end = task.with_gains(&posterior, &priors, end, SETTLED, &mut rounds, &mut shared)?;
     task.check_feasible(&end)?;
     let Reached { p, noise, .. } = rounds.reached;
     let mut model = task.model_at(&p);
