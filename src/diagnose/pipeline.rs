@@ -15,7 +15,7 @@ use super::evidence::push::Window;
 use super::evidence::set_aside::Divided;
 use super::law::Law;
 use super::law::sides::sides;
-use super::proof::describe::{kinds, sized};
+use super::proof::describe::{confirmed_of_one_sign, kinds, sized};
 use super::proof::grade::Grade;
 use super::proof::improved::{trimmed, uncertainty};
 use super::proof::prove::{HeldOut, prove, scores};
@@ -93,6 +93,7 @@ fn written_and_sized(question: &Question, mut answer: Answer, held_out: &[Run]) 
         let written = Written::new(question, &answer, base.clone());
         let lost = sized(&mut answer.findings, &answer.kept.selection, &written.found);
         if lost.is_empty() {
+            confirmed_of_one_sign(&mut answer.findings, &answer.kept.selection);
             return (answer, written);
         }
         answer = answer.regraded(question, &lost, Grade::Undetermined, held_out).with_law(question, held_out);

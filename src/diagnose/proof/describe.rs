@@ -143,6 +143,27 @@ pub(in crate::diagnose) fn sized(
     lost
 }
 
+/// The intervals of sizes of one sign that unseen runs confirm, on the scale of their logarithm: `value exp(+- reach error / value)`. What is in
+/// proportion to a coefficient (fouling to the resistance) is as uncertain as that coefficient, and yet neither zero nor of the other sign.
+pub(in crate::diagnose) fn confirmed_of_one_sign(
+    findings: &mut [Finding],
+    Selection { mechanisms, tests, estimate, .. }: &Selection,
+) {
+    for finding in findings.iter_mut().filter(|f| f.grade == Grade::Confirmed) {
+        let of_name = |m: &&Selected| tests.candidates[m.candidate].mechanism.name == finding.mechanism;
+        let Some(own) = mechanisms.iter().find(of_name) else { continue };
+        let c = &tests.candidates[own.candidate];
+        let held = c.held(&own.extent);
+        for (i, size) in finding.parameters.iter_mut().enumerate() {
+            let p = &estimate.model.parameters[c.columns[i % c.columns.len()].parameter];
+            let one_sign = held[i] == 0.0 && (p.lower == 0.0 && size.value > 0.0 || p.upper == 0.0 && size.value < 0.0);
+            if one_sign {
+                size.of_one_sign();
+            }
+        }
+    }
+}
+
 /// What the model already had of a mechanism that is found again, in words; blank if nothing.
 fn beyond(c: &Candidate, extent: &Extent, model: &Model) -> String {
     let held = c.held(extent);

@@ -36,6 +36,12 @@ impl Amplitude {
         Self { name, value, unit: unit.into(), error, ci95: [value - reach * error, value + reach * error] }
     }
 
+    /// The interval on the scale of the logarithm: `value exp(+- reach error / value)`.
+    pub fn of_one_sign(&mut self) {
+        let factor = (0.5 * (self.ci95[1] - self.ci95[0]) / self.value).exp();
+        self.ci95 = [self.value / factor, self.value * factor];
+    }
+
     /// The same uncertainty around another value.
     pub fn moved_to(&mut self, value: f64) {
         let by = value - self.value;
@@ -122,3 +128,24 @@ pub const PUSH_TITLE: &str = "a push for a limited time (tug, thruster, line)";
 
 /// The name in a confidence set for physics that is not in the catalogue.
 pub const GENERIC: &str = "generic";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_interval_of_a_size_of_one_sign_has_its_sign_and_is_the_other_one_where_the_size_is_well_known() {
+        for sign in [1.0, -1.0] {
+            let of = |error: f64| {
+                let mut size = Amplitude::within("fouling.fraction".into(), sign * 0.24, "-", error, 12.7);
+                size.of_one_sign();
+                size.ci95
+            };
+            let [low, high] = of(0.03);
+            assert!(low * sign > 0.0 && high * sign > 0.0 && (low * high - 0.24_f64.powi(2)).abs() < 1e-12);
+            assert!(low < sign * 0.24 && sign * 0.24 < high);
+            let well = of(1e-5);
+            assert!((well[1] - well[0] - 2.0 * 12.7e-5).abs() < 1e-8);
+        }
+    }
+}
