@@ -99,6 +99,9 @@ pub struct FindingTests {
     pub change: f64,
     /// Whether a size of it ended at the limit of what such a size can be.
     pub at_limit: bool,
+    /// Of what acts in some sessions only, the gain in log-likelihood of a smooth force law there over its own; 0 for all else, and where chance
+    /// gains as much.
+    pub unexplained: f64,
     /// The least time in its interval by which it shifts a sensor's clock or an actuator's answer, where it does so.
     pub shift: Option<Shift>,
     /// For a clock and for an actuator, the share of its gain in log-posterior that explicit Euler steps of one sample period take over; 0
@@ -122,6 +125,11 @@ impl FindingTests {
     /// likely it makes them, and what one measure refutes is not named.
     pub fn is_refuted(&self) -> bool {
         refute(self.likelihood, self.prediction, self.agreement)
+    }
+
+    /// Whether more is left in the sessions where it acts than the uncertainty in the form of its force: it is another cause, or not the only one.
+    pub fn is_part(&self) -> bool {
+        self.unexplained > FORM_TOLERANCE
     }
 
     /// Whether it is too small to matter: a clock by the sensor's own resolution, a lag by that or by how little it changes predictions, all
@@ -202,7 +210,7 @@ pub fn grade(tests: &FindingTests) -> Grade {
         Grade::NotIsolated
     } else if tests.by_steps > 1.0 - FORM_TOLERANCE {
         Grade::EulerSteps
-    } else if proved && !tests.at_limit {
+    } else if proved && !tests.at_limit && !tests.is_part() {
         Grade::Confirmed
     } else {
         // At the limit of what it can be it stands for a part of something else.
@@ -237,6 +245,7 @@ mod tests {
             isolated: 1.0,
             change: 0.5,
             at_limit: false,
+            unexplained: 0.0,
             shift: None,
             by_steps: 0.0,
             likelihood: BETTER,
@@ -350,6 +359,9 @@ mod tests {
         assert_eq!(grade(&FindingTests { shift: Some(Shift::OfClock(0.5)), ..sound() }), Grade::Confirmed);
         // At the limit of its possible size an effect may be part of another law, whatever unseen runs prove.
         assert_eq!(grade(&FindingTests { at_limit: true, ..sound() }), Grade::Suspected);
+        for (unexplained, expected) in [(0.05, Grade::Confirmed), (0.5, Grade::Suspected)] {
+            assert_eq!(grade(&FindingTests { unexplained, ..sound() }), expected);
+        }
         // A lag is immaterial by that, or by how little it changes predictions.
         for (change, late, wanted) in
             [(0.5, 0.49, Grade::Immaterial), (0.04, 0.6, Grade::Immaterial), (0.5, 0.6, Grade::Confirmed)]

@@ -12,10 +12,12 @@ use crate::diagnose::search::base::Question;
 use crate::diagnose::search::event::BaseTests;
 use crate::diagnose::search::problem::Problem;
 use crate::diagnose::search::residual::{Kept, Left};
+use crate::diagnose::search::screen::Screen;
 use crate::diagnose::search::selected::Selected;
 use crate::diagnose::settings::{AS_IT_IS, REFIT, SETTLE};
 use crate::evaluate::predict_all;
 use crate::likelihood::estimate::Estimate;
+use crate::numerals::sig;
 use crate::physics::{Kind, Mechanism};
 use crate::recording::Run;
 use crate::simulate::{Integration, MOST_SUBSTEPS, Method, Trajectory};
@@ -87,6 +89,7 @@ fn weight(
         isolated: isolated(tests, of),
         change: change(&fit.runs, &predict_all(&without.model, &fit.runs, fit.integration), with),
         at_limit: is_at_limit(&amplitudes, found, candidate, &of.extent),
+        unexplained: kept.left.as_ref().map_or(0.0, |left| unexplained(&left.screen, of, question.settings.alpha)),
         shift: shift(candidate.mechanism.kind, &amplitudes, &fit.runs),
         by_steps: 0.0,
         likelihood: proof.as_ref().and_then(FindingProof::likelihood),
@@ -149,6 +152,16 @@ fn is_at_limit(amplitudes: &[Amplitude], found: &Estimate, candidate: &Candidate
         let p = &found.model.parameters[found.free[i].column.parameter];
         p.upper > 0.0 && p.upper - a.value < a.error || p.lower < 0.0 && a.value - p.lower < a.error
     })
+}
+
+/// What a smooth force law of their own gains in the sessions where a mechanism acts, beside the same law in all sessions and more than by chance,
+/// over what the mechanism gained: `(T_law - d) / T`. What is wrong with the form of the ship's forces is the same in all sessions.
+fn unexplained(left: &Screen, of: &Selected, alpha: f64) -> f64 {
+    let Extent::In(sessions) = &of.extent else { return 0.0 };
+    let (law, sessions) = (left.law.columns(), sessions.iter().map(String::as_str).collect::<Vec<_>>());
+    let test = left.evidence.test_in(&left.evidence.extend(&left.base, &law), &law, &sessions);
+    let gain = test.statistic - test.degrees as f64;
+    if test.p < alpha && of.statistic > 0.0 { gain / of.statistic } else { 0.0 }
 }
 
 /// The least time by which a clock is off or an actuator late, in sample periods of the recordings: the end of its interval that is nearer to
@@ -232,7 +245,16 @@ fn does_least(weights: &[Weight], simulated: bool) -> Option<usize> {
 /// A mechanism with its weight, as a finding.
 fn weighed(kept: &Kept, mechanism: &Selected, weight: &Weight, intervals: &Intervals) -> Finding {
     let finding = mechanism_finding(mechanism, &kept.selection, intervals);
-    Finding { grade: weight.grade, held_out: weight.proof.clone(), change: Some(weight.tests.change), ..finding }
+    let why = if weight.tests.is_part() { finding.why + &in_part(weight.tests.unexplained) } else { finding.why };
+    Finding { grade: weight.grade, held_out: weight.proof.clone(), change: Some(weight.tests.change), why, ..finding }
+}
+
+/// That something acts beside a mechanism or in its place.
+fn in_part(unexplained: f64) -> String {
+    format!(
+        "; it is another cause, or not the only one: a smooth force law of the sessions where it acts gains {} % as much beside it",
+        sig(100.0 * unexplained, 2)
+    )
 }
 
 /// A mechanism that was tried and withdrawn, as a finding with its grade.
@@ -289,8 +311,13 @@ impl Base {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::example::{model, runs};
+    use crate::diagnose::evidence::candidate::candidates;
+    use crate::diagnose::example::{RK4, at, model, runs, with};
     use crate::diagnose::proof::grade::GainTest;
+    use crate::diagnose::search::screen::screen;
+    use crate::diagnose::settings::Settings;
+    use crate::likelihood::estimate::FreeParameter;
+    use crate::likelihood::noise::NoisePrior;
 
     fn weight(grade: Grade, gain: f64) -> Weight {
         let likelihood = Some(GainTest { gain, ci95: None });
@@ -299,6 +326,7 @@ mod tests {
             isolated: 1.0,
             change: 1.0,
             at_limit: false,
+            unexplained: 0.0,
             shift: None,
             by_steps: 0.0,
             likelihood,
@@ -357,5 +385,30 @@ mod tests {
         assert_eq!(shift(Kind::Ship, &[of("s", 0.8)], &runs), None);
         assert_eq!(shift(Kind::Sensor, &[of("s", 0.6), of("m", 0.3)], &runs), None);
         assert_eq!(shift(Kind::Sensor, &[], &runs), None);
+    }
+
+    /// What is left to a force law beside a zero of the rudder in session a, where these values hold in that session.
+    fn left_in_a(truth: &[(&str, f64)]) -> f64 {
+        let (m, settings) = (model(), Settings { nuisance: false, ..Settings::default() });
+        let (mut all, of_a) = (runs(&m, 12), runs(&with(truth), 12));
+        all.iter_mut().zip(of_a).filter(|(run, _)| run.session == "a").for_each(|(run, own)| *run = own);
+        let (list, prior) = (candidates(&m, &[]), NoisePrior::around(&at(&m).noise));
+        let problem = Problem { integration: RK4, runs: &all, candidates: &list, prior: &prior, settings: &settings };
+        let candidate = list.iter().position(|c| c.mechanism.name == "rudder_offset").unwrap();
+        let extent = Extent::In(vec!["a".into()]);
+        let base = problem.again(&at(&m), SETTLE);
+        let free: Vec<FreeParameter> = base.free.iter().cloned().chain(list[candidate].parameters(&extent)).collect();
+        let found = problem.estimate(&base.model, &free, &base.noise, SETTLE);
+        let statistic = 2.0 * (found.log_posterior - base.log_posterior);
+        let (set, why) = (vec![candidate], String::new());
+        let of = Selected { candidate, extent, set, why, statistic, p: 0.0, carried: false };
+        unexplained(&screen(&found, RK4, &all, &list), &of, settings.alpha)
+    }
+
+    #[test]
+    fn a_mechanism_that_is_all_that_acts_in_its_sessions_leaves_nothing_there_and_one_beside_a_current_does() {
+        assert_eq!(left_in_a(&[("rudder_offset.offset", 0.06)]), 0.0);
+        let beside = left_in_a(&[("rudder_offset.offset", 0.06), ("current.north", 0.4)]);
+        assert!(beside > 0.1, "{beside}");
     }
 }
