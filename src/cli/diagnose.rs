@@ -143,7 +143,7 @@ pub fn run(args: &Args) -> Result<Answer, CliError> {
             ),
             (Some(_), false) => String::new(),
         };
-        print(&(audited.lines() + &summary(&diagnosis, name) + &where_to))
+        print(&(audited.lines() + &audited.caution() + &summary(&diagnosis, name) + &where_to))
     };
     written.ended(printed)?;
     Ok(if unanswered { Answer::No } else { Answer::Yes })

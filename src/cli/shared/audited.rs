@@ -5,6 +5,7 @@ use super::error::CliError;
 use super::load::Loaded;
 use super::progress::progress;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 use trimtab::files::ranks::Ranks;
 use trimtab::files::suggestion;
 use trimtab::model::Model;
@@ -197,6 +198,19 @@ impl Audited {
         self.doubts.iter().any(Doubt::refused)
     }
 
+    /// That an answer is of recordings with errors which the user does not accept, for a command that answers all the same; empty without any.
+    pub fn caution(&self) -> String {
+        let refused = self.doubts.iter().filter(|d| d.refused() && CONTRADICTIONS.contains(&d.fault.as_str()));
+        let faults: BTreeSet<String> = refused.map(|d| format!(" --accept {}", d.fault)).collect();
+        let accept = if faults.is_empty() {
+            String::new()
+        } else {
+            format!(", or accept them with{}", faults.into_iter().collect::<String>())
+        };
+        let text = "The answer below is of recordings with the errors above and may be false: mend them first";
+        if self.refused() { format!("{text}{accept}. Exit code 1.\n\n") } else { String::new() }
+    }
+
     /// What was found, a sentence each.
     pub fn sentences(&self) -> Vec<String> {
         let line = |d: &Doubt| {
@@ -256,6 +270,9 @@ mod tests {
         assert_eq!(lines[0], "error: r: the sign is turned: run `b`; look at it");
         assert_eq!(lines[1], "warning: psi: stands still for 3 s (as in `a`): 2 of 3 runs; look at it");
         assert!(lines[2].starts_with("`trimtab check`") && lines.len() == 4, "{lines:?}");
-        assert_eq!(Audited::default().lines(), "");
+        assert_eq!((Audited::default().lines(), Audited::default().caution()), (String::new(), String::new()));
+        assert!(
+            audited.caution().ends_with("mend them first, or accept them with --accept sign_error. Exit code 1.\n\n")
+        );
     }
 }

@@ -107,6 +107,7 @@ pub fn next_trial(verdict: Verdict, findings: &[Finding], list: &[Candidate]) ->
 }
 
 /// What a headline is made of, beside the verdict.
+#[derive(Clone, Copy)]
 pub struct Said<'a> {
     /// What is named.
     pub findings: &'a [Finding],
@@ -222,8 +223,8 @@ fn bent(hull: &[Budget]) -> String {
     let furthest = hull.iter().filter(|b| b.used.is_finite()).max_by(|a, b| a.used.abs().total_cmp(&b.used.abs()));
     furthest.filter(|b| b.used.abs() > BENT).map_or(String::new(), |b| {
         format!(
-            " But the fit needs {} = {}, where {} +- {} is usual: what acts alike in all recordings may be in it, such as a lever of the \
-             antenna, another mass or another centre of gravity than in the ship file.",
+            " But the fit needs {} = {}, where {} +- {} is usual: what acts alike in all recordings may be in it, such as a wrong particular of \
+             the ship file (mass, centre of gravity, diameter of the propeller) or a lever of the antenna.",
             b.name,
             sig(b.value, 3),
             sig(b.prior, 3),
@@ -526,7 +527,7 @@ mod tests {
         assert!(of_another_form(false).contains("less than 2.0 % of the force that turns it"));
         let hull =
             |used: f64| [Budget { name: "hull.Yrdot".into(), prior: -1.0, sd: 2.0, value: -1.0 + 2.0 * used, used }];
-        assert_eq!(bent(&hull(4.9)), "");
+        assert_eq!(bent(&hull(7.9)), "");
         assert!(
             bent(&hull(-12.0)).contains("hull.Yrdot = -25.0, where -1.00 +- 2.0 is usual"),
             "{}",
@@ -575,7 +576,18 @@ mod tests {
         for verdict in [Verdict::NothingMissing, Verdict::Random] {
             let said = headline(verdict, &said);
             assert!(said.contains("`turn 6` (between 63.0 and 323 s) differs") && said.contains("other 23"), "{said}");
+            assert!(said.contains("Nothing of the catalogue explains `turn 6`"), "{said}");
         }
+        let explained = |alike| {
+            let parameters = vec![Amplitude::new("rate_gain.gain".into(), 0.07, "-", 0.01)];
+            let (mechanism, title) = ("rate_gain", "gain of the recorded propeller rate");
+            let causes = [Cause { recording: "turn 6".into(), mechanism, title, gain: 90.0, parameters, alike }];
+            headline(Verdict::NothingMissing, &Said { causes: &causes, ..said })
+        };
+        let (one, two) = (explained(Vec::new()), explained(vec!["loss of thrust"]));
+        let own = "In `turn 6` alone, gain of the recorded propeller rate (rate_gain.gain = 0.0700";
+        assert!(one.contains(own) && one.contains("explains it best. Look at that log"), "{one}");
+        assert!(two.contains("explains it best, and loss of thrust as well."), "{two}");
     }
 
     #[test]
