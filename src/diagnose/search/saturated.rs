@@ -12,7 +12,8 @@ use crate::diagnose::evidence::generic::GenericLaw;
 use crate::diagnose::evidence::wald::Wald;
 use crate::diagnose::law::sparse::select;
 use crate::diagnose::settings::{
-    IDENTIFIABLE_SHARE, INDISTINGUISHABLE, PARAMETER_PRICE, REFIT, REMAINDER, RIVAL_GAP, RIVALS, SENSOR_SPREAD, SETTLE,
+    BEYOND_DOUBT, IDENTIFIABLE_SHARE, INDISTINGUISHABLE, PARAMETER_PRICE, REFIT, REMAINDER, RIVAL_GAP, RIVALS,
+    SENSOR_SPREAD, SETTLE,
 };
 use crate::likelihood::estimate::{Estimate, FreeParameter, Sums, base_of, restrictions};
 use crate::likelihood::evidence::chi_squared_p;
@@ -23,7 +24,8 @@ use crate::statistics::corrected;
 use nalgebra::DVector;
 
 /// The errors of sensors without which, and with all others zero, the saturated model would lose significantly more than with them: those of
-/// most gain first, each with a model, a noise and what is free for a refit to start from. None where all errors together gain nothing.
+/// most gain first, each with a model, a noise and what is free for a refit to start from. None where all errors together gain nothing. No test at the
+/// base shows them, and another optimum of the base may gain as chance does not: only what is beyond doubt is proposed.
 ///
 /// With the estimates theta of all errors and their covariance C, keeping the error e alone loses
 ///
@@ -33,7 +35,7 @@ use nalgebra::DVector;
 ///
 /// in log-likelihood; with R = all errors it is what they gain together.
 pub fn hidden(current: &Estimate, problem: Problem, beside: Beside) -> Vec<Leading> {
-    let Problem { candidates, settings, .. } = problem;
+    let candidates = problem.candidates;
     let errors = problem.sensor_errors(current);
     let Saturated { found, places } = Saturated::new(current, problem, &errors);
     if found.log_posterior - current.log_posterior < INDISTINGUISHABLE {
@@ -52,7 +54,7 @@ pub fn hidden(current: &Estimate, problem: Problem, beside: Beside) -> Vec<Leadi
         let statistic = together - lost(places);
         let p = corrected(chi_squared_p(statistic.max(0.0), places.len()), errors.len() as f64);
         let further = Further { candidate, extent: &Extent::All, statistic, p };
-        let may_be = p < settings.alpha && beside.allows(&further, candidates);
+        let may_be = p < BEYOND_DOUBT && beside.allows(&further, candidates);
         may_be.then(|| (candidate, places.clone(), statistic, p))
     };
     let mut gained: Vec<_> = errors.iter().copied().zip(&places).filter_map(gained).collect();
