@@ -8,7 +8,7 @@ use crate::diagnose::evidence::wald::Wald;
 use crate::diagnose::proof::finding::Amplitude;
 use crate::diagnose::search::compete::{amplitudes, form_tolerance, start_with};
 use crate::diagnose::search::event::BaseTests;
-use crate::diagnose::search::problem::Problem;
+use crate::diagnose::search::problem::{Problem, total};
 use crate::diagnose::search::screen::screen_by_session;
 use crate::diagnose::settings::{
     BEYOND_DOUBT, IDENTIFIABLE_SHARE, INDISTINGUISHABLE, PARAMETER_PRICE, REFIT, RIVALS, Settings,
@@ -100,7 +100,7 @@ fn cause(tests: &BaseTests, recording: &str, settings: &Settings) -> Option<Caus
 /// Whether a parameter ended at a limit other than nothing: there it stands for a part of something else.
 fn at_limit(f: &FreeParameter, found: &Estimate) -> bool {
     let p = &found.model.parameters[f.column.parameter];
-    let value = p.value + f.value(&found.model);
+    let value = total(f, &found.model);
     [p.lower, p.upper].iter().any(|limit| *limit != 0.0 && (value - limit).abs() < 1e-3 * p.scale)
 }
 

@@ -115,6 +115,11 @@ pub(in crate::diagnose) fn mechanism_finding(
     }
 }
 
+/// The selected mechanism that a finding names; `None` for what is no mechanism.
+fn selected<'a>(finding: &Finding, mechanisms: &'a [Selected], candidates: &[Candidate]) -> Option<&'a Selected> {
+    mechanisms.iter().find(|m| candidates[m.candidate].mechanism.name == finding.mechanism)
+}
+
 /// Gives the findings of a selection the sizes in the estimate that is written to the file, with the uncertainty as it is.
 /// Returns those that unseen runs do not prove, and whose intervals excluded zero before and all include it then.
 pub(in crate::diagnose) fn sized(
@@ -125,8 +130,7 @@ pub(in crate::diagnose) fn sized(
     let excludes_zero = |finding: &Finding| finding.parameters.iter().any(|p| p.ci95[0] > 0.0 || p.ci95[1] < 0.0);
     let mut lost = Vec::new();
     for finding in findings {
-        let candidate = |m: &&Selected| tests.candidates[m.candidate].mechanism.name == finding.mechanism;
-        let Some(own) = mechanisms.iter().find(candidate) else { continue };
+        let Some(own) = selected(finding, mechanisms, &tests.candidates) else { continue };
         let c = &tests.candidates[own.candidate];
         let of = |(i, held): (usize, &f64)| {
             let f = &written.free[i];
@@ -150,8 +154,7 @@ pub(in crate::diagnose) fn confirmed_of_one_sign(
     Selection { mechanisms, tests, estimate, .. }: &Selection,
 ) {
     for finding in findings.iter_mut().filter(|f| f.grade == Grade::Confirmed) {
-        let of_name = |m: &&Selected| tests.candidates[m.candidate].mechanism.name == finding.mechanism;
-        let Some(own) = mechanisms.iter().find(of_name) else { continue };
+        let Some(own) = selected(finding, mechanisms, &tests.candidates) else { continue };
         let c = &tests.candidates[own.candidate];
         let held = c.held(&own.extent);
         for (i, size) in finding.parameters.iter_mut().enumerate() {

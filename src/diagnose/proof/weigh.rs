@@ -158,8 +158,7 @@ fn is_at_limit(amplitudes: &[Amplitude], found: &Estimate, candidate: &Candidate
 /// over what the mechanism gained: `(T_law - d) / T`. What is wrong with the form of the ship's forces is the same in all sessions.
 fn unexplained(left: &Screen, of: &Selected, alpha: f64) -> f64 {
     let Extent::In(sessions) = &of.extent else { return 0.0 };
-    let (law, sessions) = (left.law.columns(), sessions.iter().map(String::as_str).collect::<Vec<_>>());
-    let test = left.evidence.test_in(&left.evidence.extend(&left.base, &law), &law, &sessions);
+    let test = left.law_of_its_own(sessions);
     let gain = test.statistic - test.degrees as f64;
     if test.p < alpha && of.statistic > 0.0 { gain / of.statistic } else { 0.0 }
 }

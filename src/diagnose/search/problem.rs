@@ -99,7 +99,7 @@ impl Problem<'_> {
 }
 
 /// The parameter with what is added to it where it acts.
-fn total(f: &FreeParameter, model: &Model) -> f64 {
+pub(in crate::diagnose) fn total(f: &FreeParameter, model: &Model) -> f64 {
     let addition = if f.sessions.is_some() { f.value(model) } else { 0.0 };
     model.parameters[f.column.parameter].value + addition
 }

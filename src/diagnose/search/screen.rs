@@ -133,6 +133,12 @@ impl Screen {
         self.test_beside(&self.evidence.extend(&self.base, &errors), index, extent).retained
     }
 
+    /// Tests a smooth force law of these sessions, beside the same law in all sessions.
+    pub fn law_of_its_own(&self, sessions: &[String]) -> Test {
+        let law = self.law.columns();
+        self.evidence.test_in(&self.evidence.extend(&self.base, &law), &law, &named(sessions))
+    }
+
     fn test_beside(&self, base: &Base, index: usize, extent: &Extent) -> Test {
         let columns = self.columns(index);
         match extent {

@@ -256,8 +256,8 @@ impl<'t> Task<'t> {
         self.with_gains(posterior, priors, descent, LEFT, rounds, shared)
     }
 
-    /// Rounds of gains and parameters with the noise as it is, until the objective falls by less than `left`. A measurement that is no outlier to the new gains
-    /// comes back, so that a round may fall by more than the one before.
+    /// Rounds of gains and parameters with the noise as it is, until the objective falls by less than `left`. A measurement that is no outlier to
+    /// the new gains comes back, so that a round may fall by more than the one before.
     fn with_gains(
         &self,
         posterior: &Posterior,
