@@ -5,7 +5,7 @@ use criterion::Criterion;
 use std::hint::black_box;
 use trimtab::fit::{Cost, Derivatives, FitSettings, Hessian, fit};
 use trimtab::likelihood::filter::{Column, Filter, Gains, Wanted};
-use trimtab::likelihood::noise_fit::guess;
+use trimtab::likelihood::noise::fit::guess;
 use trimtab::model::Model;
 use trimtab::recording::Run;
 use trimtab::simulate::{Integration, Method};

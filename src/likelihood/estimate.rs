@@ -3,8 +3,8 @@
 
 use super::evidence::{Base, Evidence, RunEvidence};
 use super::filter::{Column, Filter, GATE, Pass, Tangent, Wanted};
+use super::noise::fit::{KeptInformation, fit_noise};
 use super::noise::{Noise, NoisePrior};
-use super::noise_fit::fit_noise;
 use super::optimise::{Outcome, Proposal, Quadratic};
 pub use super::parameters::FreeParameter;
 pub use super::settings::Effort;
@@ -207,7 +207,8 @@ pub fn calm_noise(found: &Estimate, integration: Integration, runs: &[Run], prio
     let some: Vec<&Run> = order.iter().map(|i| &runs[*i]).collect();
     let tangents = tangents(&found.model, integration, &some, &found.noise);
     let tangents: Vec<&Tangent> = tangents.iter().collect();
-    fit_noise(&some, &tangents, &found.model, &found.noise, prior, GATE, CALM_ITERATIONS)
+    let kept = &mut KeptInformation::default();
+    fit_noise(&some, &tangents, &found.model, &found.noise, prior, GATE, CALM_ITERATIONS, kept)
 }
 
 /// The noise of all runs by maximum likelihood, under step maps that are linearised along their filtered paths.
@@ -220,12 +221,13 @@ pub fn fitted_noise(
     noise: &Noise,
     prior: &NoisePrior,
     iterations: usize,
+    kept: &mut KeptInformation,
 ) -> Noise {
     let all: Vec<&Run> = runs.iter().collect();
     let filter = Filter::new(model, integration, &[]);
     let mut maps = Vec::with_capacity(runs.len());
     let sums = Sums::and_step_maps(&filter, runs, noise, &[], false, Some(&mut maps));
-    gated_noise(&all, &maps, model, noise, prior, sums.outlier_share(), iterations)
+    gated_noise(&all, &maps, model, noise, prior, sums.outlier_share(), iterations, kept)
 }
 
 fn gated_noise(
@@ -236,10 +238,11 @@ fn gated_noise(
     prior: &NoisePrior,
     outliers: f64,
     iterations: usize,
+    kept: &mut KeptInformation,
 ) -> Noise {
     let maps: Vec<&Tangent> = maps.iter().collect();
     let gates = if outliers > OUTLIER_SHARE { &[f64::INFINITY, GATE][..] } else { &[GATE] };
-    gates.iter().fold(*noise, |noise, gate| fit_noise(runs, &maps, model, &noise, prior, *gate, iterations))
+    gates.iter().fold(*noise, |noise, gate| fit_noise(runs, &maps, model, &noise, prior, *gate, iterations, kept))
 }
 
 /// Fits the free parameters and the noise, starting from the model's values.
@@ -272,7 +275,7 @@ pub fn estimate_above(
     let columns = free.iter().map(|f| f.column).collect();
     let fit = Fit { integration, runs, free, columns, prior, effort };
     let mut point = fit.at(start.clone(), *noise, if effort.rounds > 0 { Beside::Slopes } else { Beside::Nothing });
-    let (mut damping, mut refused) = (0.0, false);
+    let (mut damping, mut refused, mut kept) = (0.0, false, KeptInformation::default());
     for round in 0..effort.rounds {
         point = fit.differentiated(point);
         let quadratic = quadratic(&point.sums.evidence, &point.model, free);
@@ -296,7 +299,7 @@ pub fn estimate_above(
         point = next.unwrap_or(point);
         let before = point.value;
         if fits_noise && !refused {
-            let better = fit.better_noise(&mut point, if last { Beside::Nothing } else { Beside::Slopes });
+            let better = fit.better_noise(&mut point, if last { Beside::Nothing } else { Beside::Slopes }, &mut kept);
             refused = better.is_none();
             point = better.unwrap_or(point);
         }
@@ -401,19 +404,19 @@ impl Fit<'_> {
     }
 
     /// The point with the noise fitted to all runs, linearised; `None` where that is no better than the noise of the point.
-    fn better_noise(&self, point: &mut Point, beside: Beside) -> Option<Point> {
-        let trial = self.at(point.model.clone(), self.noise(point), beside);
+    fn better_noise(&self, point: &mut Point, beside: Beside, kept: &mut KeptInformation) -> Option<Point> {
+        let trial = self.at(point.model.clone(), self.noise(point, kept), beside);
         (trial.value > point.value).then_some(trial)
     }
 
     /// The noise of the runs at a point, whose step maps it takes. Of all of them: from a part of them the answer would depend on
     /// their order.
-    fn noise(&self, point: &mut Point) -> Noise {
+    fn noise(&self, point: &mut Point, kept: &mut KeptInformation) -> Noise {
         let all: Vec<&Run> = self.runs.iter().collect();
-        let kept = point.step_maps.take();
+        let maps = point.step_maps.take();
         let Point { model, noise, sums, .. } = point;
-        let tangents = kept.unwrap_or_else(|| tangents(model, self.integration, &all, noise));
-        gated_noise(&all, &tangents, model, noise, self.prior, sums.outlier_share(), self.effort.noise_iterations)
+        let tangents = maps.unwrap_or_else(|| tangents(model, self.integration, &all, noise));
+        gated_noise(&all, &tangents, model, noise, self.prior, sums.outlier_share(), self.effort.noise_iterations, kept)
     }
 }
 

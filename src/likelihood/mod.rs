@@ -4,13 +4,12 @@
 //! | file | what |
 //! |---|---|
 //! | [`settings`] | its numbers |
-//! | [`noise`] | the noise and its prior |
 //! | [`pass`] | what a pass of the filter is asked for, and gives |
 //! | `directions`, `step_map`, `covariance`, `side_by_side` | the filter's parts: sensitivities, steps, covariances, four runs at a time |
 //! | [`filter`] | the extended Kalman filter with exact sensitivities |
 //! | [`evidence`] | sums of scores and information, and score tests on them |
 //! | [`parameters`] | what is free in an estimate |
-//! | [`noise_fit`] | the noise by maximum likelihood |
+//! | [`noise`] | the noise, its prior, and its estimate by maximum likelihood |
 //! | `optimise` | the damped Newton steps of the searches for a structure |
 //! | [`estimate`] | the best model of a given structure |
 
@@ -21,7 +20,6 @@ pub mod estimate;
 pub mod evidence;
 pub mod filter;
 pub mod noise;
-pub mod noise_fit;
 pub(crate) mod optimise;
 pub mod parameters;
 pub mod pass;

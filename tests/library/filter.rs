@@ -6,8 +6,8 @@ use rayon::prelude::*;
 use trimtab::likelihood::estimate::{Effort, FreeParameter, estimate, log_posterior};
 use trimtab::likelihood::evidence::{Evidence, RunEvidence};
 use trimtab::likelihood::filter::{Column, Filter, GATE, Wanted};
+use trimtab::likelihood::noise::fit::{KeptInformation, fit_noise, guess};
 use trimtab::likelihood::noise::{NOISE_PARAMETERS, Noise, NoisePrior, SensorNoise};
-use trimtab::likelihood::noise_fit::{fit_noise, guess};
 use trimtab::model::{ELEVEN, Model};
 use trimtab::physics::Probe;
 use trimtab::simulate::{Integration, Method};
@@ -107,7 +107,7 @@ fn noise_is_recovered_and_the_fisher_step_finds_the_parameters() {
             let clock = std::time::Instant::now();
             let tangents: Vec<_> = passes.iter().filter_map(|p| p.tangent.as_ref()).collect();
             let r: Vec<_> = data.iter().collect();
-            estimate = fit_noise(&r, &tangents, &model, &estimate, &prior, GATE, 12);
+            estimate = fit_noise(&r, &tangents, &model, &estimate, &prior, GATE, 12, &mut KeptInformation::default());
             println!("noise in {:?}: {estimate:?}", clock.elapsed());
         }
     }
@@ -136,7 +136,8 @@ fn fitted_noise_is_the_most_likely_one() {
     for _ in 0..3 {
         let passes = pass(&noise);
         let tangents: Vec<_> = passes.iter().filter_map(|p| p.tangent.as_ref()).collect();
-        noise = fit_noise(&data.iter().collect::<Vec<_>>(), &tangents, &model, &noise, &prior, GATE, 20);
+        let all: Vec<_> = data.iter().collect();
+        noise = fit_noise(&all, &tangents, &model, &noise, &prior, GATE, 20, &mut KeptInformation::default());
     }
     let likelihood = |noise: &Noise| pass(noise).iter().map(|p| p.log_likelihood).sum::<f64>();
     let best = likelihood(&noise);

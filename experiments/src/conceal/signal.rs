@@ -8,7 +8,7 @@ use trimtab::likelihood::estimate::{Estimate, base_of, estimate, evidence, passe
 use trimtab::likelihood::evidence::{Base, Evidence};
 use trimtab::likelihood::filter::{Column, Filter, Wanted};
 use trimtab::likelihood::noise::NoisePrior;
-use trimtab::likelihood::noise_fit::guess;
+use trimtab::likelihood::noise::fit::guess;
 use trimtab::likelihood::parameters::base_parameters;
 use trimtab::likelihood::settings::Effort;
 use trimtab::model::{Model, ModelError};

@@ -281,7 +281,7 @@ fn edges(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::likelihood::noise_fit::guess;
+    use crate::likelihood::noise::fit::guess;
     use crate::model::Model;
     use crate::physics::Form;
     use crate::recording::Split;

@@ -2,8 +2,8 @@
 //! Nothing is estimated: there are no recordings yet.
 
 use super::settings::{Sensor, SensorSettings};
+use crate::likelihood::noise::fit::guess;
 use crate::likelihood::noise::{GROUP_OF, Noise, SensorNoise};
-use crate::likelihood::noise_fit::guess;
 use crate::likelihood::settings::{COLOURED_GUESS, COLOURED_PERIODS};
 use crate::model::Model;
 use crate::recording::Run;

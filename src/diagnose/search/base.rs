@@ -9,8 +9,8 @@ use crate::diagnose::settings::{
 };
 use crate::fit::backwards::{Estimated, backwards, unequal};
 use crate::likelihood::estimate::{Estimate, estimate, left_to_gain, log_posterior, passes};
+use crate::likelihood::noise::fit::{guess, little_force};
 use crate::likelihood::noise::{Noise, NoisePrior};
-use crate::likelihood::noise_fit::{guess, little_force};
 use crate::likelihood::parameters::base_parameters;
 use crate::model::{Model, ModelError};
 use crate::recording::audit::{Issue, Severity, settled};

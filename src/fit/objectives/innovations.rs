@@ -6,8 +6,8 @@ use crate::fit::error::FitError;
 use crate::likelihood::estimate::{fitted_noise, restrictions, run_evidence};
 use crate::likelihood::evidence::RunEvidence;
 use crate::likelihood::filter::{Column, Filter, Gains, Pass, Wanted};
+use crate::likelihood::noise::fit::{KeptInformation, guess};
 use crate::likelihood::noise::{Noise, NoisePrior};
-use crate::likelihood::noise_fit::guess;
 use crate::likelihood::parameters::{FreeParameter, base_parameters, uncertain_coefficients};
 use crate::model::Model;
 use crate::recording::Run;
@@ -63,7 +63,8 @@ pub fn with_uncertain_coefficients(model: &Model) -> Model {
 pub fn noise_at(model: &Model, runs: &[Run], integration: Integration, from: Option<&Noise>, p: &[f64]) -> Noise {
     let first = guess(runs, model);
     let at = model_at(model, &model.free(), &[], p);
-    fitted_noise(&at, integration, runs, from.unwrap_or(&first), &NoisePrior::around(&first), NOISE_ITERATIONS)
+    let (prior, kept) = (NoisePrior::around(&first), &mut KeptInformation::default());
+    fitted_noise(&at, integration, runs, from.unwrap_or(&first), &prior, NOISE_ITERATIONS, kept)
 }
 
 /// A model with some parameters, and then what sessions add to parameters, at `p`.

@@ -34,8 +34,8 @@ use crate::fit::objectives::objective::Objective;
 use crate::fit::settings::{FitSettings, Goal, Hessian};
 use crate::ipopt::Multipliers;
 use crate::likelihood::estimate::{Estimate, fitted_noise, log_posterior};
+use crate::likelihood::noise::fit::{KeptInformation, guess};
 use crate::likelihood::noise::{Noise, NoisePrior};
-use crate::likelihood::noise_fit::guess;
 use crate::likelihood::parameters::{FreeParameter, base_parameters};
 use crate::recording::{Run, Runs};
 use crate::simulate::Integration;
@@ -143,9 +143,9 @@ impl<'a> Posterior<'a> {
     }
 
     /// These parameters with the noise of the runs there.
-    fn reached(&self, p: &[f64], from: &Noise) -> Reached {
+    fn reached(&self, p: &[f64], from: &Noise, kept: &mut KeptInformation) -> Reached {
         let (model, integration) = (self.task.model_at(p), self.task.settings.integration);
-        let noise = fitted_noise(&model, integration, self.runs, from, &self.noise_prior, NOISE_ITERATIONS);
+        let noise = fitted_noise(&model, integration, self.runs, from, &self.noise_prior, NOISE_ITERATIONS, kept);
         Reached { p: p.to_vec(), noise, value: self.log_density(p, &noise) }
     }
 }
@@ -164,6 +164,8 @@ struct Rounds {
     /// Whether they are near the optimum.
     near: bool,
     count: usize,
+    /// Of the noise.
+    information: KeptInformation,
 }
 
 impl<'t> Task<'t> {
@@ -180,9 +182,10 @@ impl<'t> Task<'t> {
         let priors = priors(&free);
         let first = guess(runs, self.model);
         let posterior = Posterior { task: self, runs, free, noise_prior: NoisePrior::around(&first) };
-        let reached = posterior.reached(&self.start, &first);
+        let mut information = KeptInformation::default();
+        let reached = posterior.reached(&self.start, &first, &mut information);
         let start_log_posterior = reached.value;
-        let mut rounds = Rounds { reached, multipliers: None, near: false, count: 0 };
+        let mut rounds = Rounds { reached, multipliers: None, near: false, count: 0, information };
         let few = stages::drawn(runs);
         if let Some(few) = &few {
             self.approach_by_likelihood(&posterior, few, &priors, &mut rounds, &mut shared)?;
@@ -205,8 +208,9 @@ impl<'t> Task<'t> {
                 is_checked = true;
                 break;
             };
-            let reached = posterior.reached(&lower, noise);
-            rounds = Rounds { reached, multipliers: None, near: false, count: rounds.count };
+            let noise = *noise;
+            rounds.reached = posterior.reached(&lower, &noise, &mut rounds.information);
+            (rounds.multipliers, rounds.near) = (None, false);
             descent = self.settled(&posterior, &priors, &[], &mut rounds, &mut shared)?;
         }
         let Rounds { reached, count, .. } = rounds;
@@ -229,13 +233,14 @@ impl<'t> Task<'t> {
     ) -> Result<(), FitError> {
         let Posterior { task, free, noise_prior, .. } = posterior;
         let of_few = Posterior { task, runs: few, free: free.clone(), noise_prior: *noise_prior };
-        let reached = of_few.reached(&rounds.reached.p, &rounds.reached.noise);
-        let mut near = Rounds { reached, multipliers: None, near: false, count: 0 };
+        let mut information = KeptInformation::default();
+        let reached = of_few.reached(&rounds.reached.p, &rounds.reached.noise, &mut information);
+        let mut near = Rounds { reached, multipliers: None, near: false, count: 0, information };
         let before = std::mem::take(&mut shared.work);
         self.with_noise(&of_few, priors, &SHORT, &mut near, shared)?;
         let own = std::mem::replace(&mut shared.work, before);
         shared.work.join(&own, share_of(few, posterior.runs));
-        let there = posterior.reached(&near.reached.p, &near.reached.noise);
+        let there = posterior.reached(&near.reached.p, &near.reached.noise, &mut rounds.information);
         rounds.count = near.count;
         if there.value > rounds.reached.value || !self.is_feasible(&rounds.reached.p) {
             (rounds.reached, rounds.multipliers) = (there, near.multipliers);
@@ -304,8 +309,8 @@ impl<'t> Task<'t> {
             let close = if rounds.multipliers.is_none() && round == 1 { FIRST_CLOSE } else { CLOSE };
             let most = far.or(rounds.near.then_some(close));
             let (mut descent, fall) = self.round(posterior, priors, most, rounds, shared)?;
-            let Reached { noise, value: before, .. } = &rounds.reached;
-            let next = posterior.reached(&descent.p, noise);
+            let Reached { noise, value: before, .. } = rounds.reached;
+            let next = posterior.reached(&descent.p, &noise, &mut rounds.information);
             let rise = next.value - before;
             // A few steps that end far from the optimum, or above where they began since that was not within limits, have not arrived.
             let arrived = most.is_none() || descent.optimum.is_some() || far.is_none() && fall > -SETTLED;
@@ -412,7 +417,8 @@ pub(crate) fn within_limits(
     let posterior = Posterior { task: &task, runs, free, noise_prior: *noise_prior };
     let value = posterior.log_density(&task.start, &found.noise);
     let reached = Reached { p: task.start.clone(), noise: found.noise, value };
-    let mut rounds = Rounds { reached, multipliers: None, near: true, count: 0 };
+    let mut rounds =
+        Rounds { reached, multipliers: None, near: true, count: 0, information: KeptInformation::default() };
     let end = task.with_noise(&posterior, &priors, &[], &mut rounds, &mut shared)?;
     let end = task.with_gains(&posterior, &priors, end, SETTLED, &mut rounds, &mut shared)?;
     task.check_feasible(&end)?;

@@ -1,7 +1,7 @@
 //! The noise behind every statement of the diagnosis: what sensors add, the force that is not modelled, and a prior of both.
-//! It says nothing of the ship; its numbers are estimated in `noise_fit`.
+//! It says nothing of the ship; its numbers are estimated in [`super::fit`].
 
-use super::settings::{NOISE_FORCE_SPREAD, NOISE_SIZE_SPREAD, NOISE_TIME_SPREAD, NOISE_WHITE_SPREAD};
+use crate::likelihood::settings::{NOISE_FORCE_SPREAD, NOISE_SIZE_SPREAD, NOISE_TIME_SPREAD, NOISE_WHITE_SPREAD};
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
