@@ -370,6 +370,26 @@ fn what_the_audit_advises_mends_the_recording() {
 }
 
 #[test]
+fn a_fault_of_one_channel_is_blamed_on_no_other() {
+    let antenna = |t: &mut Table| {
+        let psi = t.get("psi");
+        t.each("x", |i, x| x + 12.0 * psi[i].cos());
+        t.each("y", |i, y| y + 12.0 * psi[i].sin());
+    };
+    let of_channels: [(Files, &[Channel]); 3] = [
+        (Files::sound().run(RUN, |t| t.each("r", |_, r| -r)), &[Channel::R]),
+        (Files::sound().run(RUN, |t| t.each("u", |_, _| 0.0)), &[Channel::U]),
+        // The lever is told of the sway of the track.
+        (Files::sound().all(antenna), &[Channel::V]),
+    ];
+    for (files, channels) in of_channels {
+        let found = doubts(&files.audit());
+        let at_fault = |(_, issue): &(String, Issue)| issue.channel.is_some_and(|c| channels.contains(&c));
+        assert!(!found.is_empty() && found.iter().all(at_fault), "{channels:?}: {found:#?}");
+    }
+}
+
+#[test]
 fn a_channel_that_one_run_lacks_is_an_error_and_one_that_all_lack_is_none() {
     let lacking = |files: Files| {
         let found = doubts(&files.audit());

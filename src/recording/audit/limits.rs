@@ -69,7 +69,7 @@ pub const RESOLUTIONS: f64 = 2.0;
 
 // --- Frozen channels ---
 
-/// Fewest rows of one value that are called frozen: of position and heading, which integrate, and of velocities.
+/// Fewest rows of one value that are called frozen: of position and heading, which integrate, or of next to nothing; and of velocities.
 pub const FROZEN_ROWS: [usize; 2] = [10, 50];
 /// A frozen position or heading misses this many times what it changes from value to value around,
 pub const FROZEN_CHANGES: f64 = 5.0;

@@ -312,6 +312,15 @@ mod tests {
     }
 
     #[test]
+    fn a_log_that_reads_nothing_is_frozen_and_no_fault_of_axes_units_or_heading() {
+        let mut run = swing();
+        values(&mut run, Channel::U).fill(0.0);
+        let found = issues(run);
+        let frozen = |i: &Issue| i.fault == "frozen" && i.channel == Some(Channel::U);
+        assert!(found.len() == 1 && frozen(&found[0]), "{found:?}");
+    }
+
+    #[test]
     fn an_outlier_is_reported_with_its_line() {
         let mut run = swing();
         values(&mut run, Channel::U)[123] += 3.0;

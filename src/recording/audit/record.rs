@@ -133,10 +133,14 @@ pub(super) fn examined(recording: &Recording) -> (Audit, Responses) {
     let recording = turned.as_ref().unwrap_or(recording);
     magnitudes(recording, &mut issues);
     still(recording, &mut issues);
-    let series = Series::from(recording);
+    let stands = frozen(&Series::from(recording), &mut issues);
+    let without = |left: Option<Recording>, (channel, rows): &(Channel, Vec<usize>)| {
+        Some(left.as_ref().unwrap_or(recording).without(*channel, rows))
+    };
+    let moving = stands.iter().fold(None, without);
+    let series = Series::from(moving.as_ref().unwrap_or(recording));
     let responses = Responses::of(&series);
     let kinematics = agreement([(&series, &responses)], &mut issues);
-    frozen(&series, &mut issues);
     outliers(recording, &reported, &mut issues);
     issues.sort_by_key(|i| std::cmp::Reverse(i.severity));
     let t = recording.time();

@@ -10,15 +10,19 @@ use crate::recording::Run;
 /// Faults of runs that need no model to be found: units, signs and axes that contradict each other over all runs together, which block any
 /// conclusion, and channels that are frozen in one.
 pub fn audit_runs(runs: &[Run]) -> Vec<Issue> {
-    let series: Vec<Series<'static>> = runs.iter().map(Series::from).collect();
+    let (mut series, mut frozen_in) = (Vec::new(), Vec::new());
+    for run in runs {
+        let (one, mut own) = (Series::from(run), Vec::new());
+        // What a frozen channel contradicts besides is no fault of its own.
+        if frozen(&one, &mut own).is_empty() {
+            series.push(one);
+        }
+        frozen_in.extend(own.into_iter().map(|i| Issue { text: format!("{}: {}", run.name, i.text), ..i }));
+    }
     let mut issues = Vec::new();
     let responses: Vec<Responses> = series.iter().map(Responses::of).collect();
     agreement(series.iter().zip(&responses), &mut issues);
     issues.retain(Issue::blocking);
-    for (run, series) in runs.iter().zip(&series) {
-        let mut own = Vec::new();
-        frozen(series, &mut own);
-        issues.extend(own.into_iter().map(|i| Issue { text: format!("{}: {}", run.name, i.text), ..i }));
-    }
+    issues.extend(frozen_in);
     issues
 }

@@ -55,6 +55,8 @@ pub struct Evidence {
     small: Vec<Channel>,
     /// Channels with damaged single values, from which no lag is estimated.
     damaged: Vec<Channel>,
+    /// Whether its positions are those of another point than its velocities, which reads as a late or early clock.
+    levered: bool,
     /// Channels of the motion that were not recorded, and not derived, and what to do.
     lacks: Vec<(Channel, String)>,
     /// Whether the audit of the run alone already reports a fault of its track, so that dead reckoning adds nothing.
@@ -100,6 +102,7 @@ impl Evidence {
             turned: of_fault("sign_error"),
             small: of_fault("unit_error"),
             damaged: of_fault("outlier"),
+            levered: issues.iter().any(|i| i.fault == "lever"),
             lacks: issues
                 .iter()
                 .filter(|i| i.fault == "not_recorded")
@@ -275,9 +278,10 @@ struct Pair {
 }
 
 impl Pair {
-    /// The response of a run in which no value of the channel is damaged.
+    /// The response of a run in which no value of the channel is damaged, nor the channel told to be of another point.
     fn curve<'r>(&self, run: &'r Evidence) -> Option<&'r Curve> {
-        (self.of)(&run.responses).filter(|_| !run.damaged.contains(&self.channel))
+        let levered = self.channel == Channel::X && run.levered;
+        (self.of)(&run.responses).filter(|_| !run.damaged.contains(&self.channel) && !levered)
     }
 }
 
@@ -395,7 +399,8 @@ fn late(runs: &[Evidence], sources: &Sources, pair: &Pair, time: f64) -> Vec<Sha
         |seconds: f64, share: f64, step: f64| seconds.abs() > (share * time).max(LAG_STEPS[0] * step).max(blur);
     let excused = |seconds: f64| pair.excused[usize::from(seconds < 0.0)];
     // An actuator of the wrong sign, or of a motion of the wrong sign, cannot be distinguished from one that is late by half a period.
-    let sound = |r: &&Evidence| !r.turned.iter().any(|c| [pair.channel, Channel::R, Channel::U].contains(c));
+    let motion_turned = |r: &Evidence| r.turned.iter().any(|c| [Channel::R, Channel::U].contains(c));
+    let sound = |r: &&Evidence| !r.turned.contains(&pair.channel) && !motion_turned(r);
     let of_sound = runs.iter().filter(sound).filter_map(|r| Some((r, pair.curve(r)?)));
     let curves: Vec<(&Evidence, &Curve)> = of_sound.filter(|(_, c)| evident(c)).collect();
     // Where several runs show that the sign is turned, it may be so in the others.
@@ -445,8 +450,9 @@ fn late(runs: &[Evidence], sources: &Sources, pair: &Pair, time: f64) -> Vec<Sha
     let by_others = pool.as_ref().map_or_else(Vec::new, |pool| {
         let odd = odd(&among_others, pool, sources, worth).into_iter().map(|odd| odd.map(odd_issue));
         let stuck = stuck(&among_others, pool).into_iter().map(|plateau| plateau.map(|p| stands_still(pair, p)));
-        let of_run =
-            |(run, issue): (&Evidence, Option<Issue>)| Some(Shared { runs: vec![run.run.clone()], issue: issue? });
+        let of_run = |(run, issue): (&Evidence, Option<Issue>)| {
+            Some(Shared { runs: vec![run.run.clone()], issue: issue.filter(|_| !motion_turned(run))? })
+        };
         runs.iter().zip(odd).chain(runs.iter().zip(stuck)).filter_map(of_run).collect()
     });
     let together = all.map(|seconds| Shared {
@@ -575,7 +581,7 @@ fn sessions(runs: &[Evidence], pair: &Pair, time: f64) -> Vec<Shared> {
     let curves = |inside: bool, name: &str| {
         let name = name.to_owned();
         let wanted = move |r: &&Evidence| (r.session == name) == inside;
-        runs.iter().filter(wanted).filter_map(|r| (pair.of)(&r.responses)).filter(|c| evident(c)).collect::<Vec<_>>()
+        runs.iter().filter(wanted).filter_map(|r| pair.curve(r)).filter(|c| evident(c)).collect::<Vec<_>>()
     };
     let differing = |name: &&str| {
         let (own, others) = (curves(true, name), curves(false, name));

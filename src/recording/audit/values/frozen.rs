@@ -11,10 +11,11 @@ use crate::statistics::{median, quantile};
 use std::ops::Range;
 
 /// Channels that keep one value while their partners show that they should not: position and heading against the integral of the rates,
-/// velocities against the derivative of position and heading.
-pub fn frozen(series: &Series<'_>, issues: &mut Vec<Issue>) {
+/// velocities against the derivative of position and heading. Gives their rows: what these contradict besides is no fault of its own.
+pub fn frozen(series: &Series<'_>, issues: &mut Vec<Issue>) -> Vec<(Channel, Vec<usize>)> {
     let t = &series.t;
     let duration = |rows: &Range<usize>| t[rows.end - 1] - t[rows.start];
+    let mut stands = Vec::new();
     for channel in STATE_CHANNELS {
         let Some(values) = series.recorded(channel) else { continue };
         let still = still(series, channel, values);
@@ -28,14 +29,16 @@ pub fn frozen(series: &Series<'_>, issues: &mut Vec<Issue>) {
         let next = "leave the fields blank, so that it counts as a dropout";
         let issue = Issue::new(Severity::Warning, "frozen", text, next).of(channel);
         issues.push(issue.at(series.lines(longest)));
+        stands.push((channel, still.into_iter().flatten().collect()));
     }
+    stands
 }
 
 /// The stretches over which a channel keeps one value and should not.
 fn still(series: &Series<'_>, channel: Channel, values: &[f64]) -> Vec<Range<usize>> {
     let t = &series.t;
     let integrates = matches!(channel, Channel::X | Channel::Y | Channel::Psi);
-    let least = FROZEN_ROWS[usize::from(!integrates)];
+    let [least, of_velocity] = FROZEN_ROWS;
     let stretches: Vec<Range<usize>> = series.stretches.iter().flat_map(|s| constant(values, s.clone())).collect();
     if stretches.iter().all(|rows| rows.len() < least) {
         return Vec::new();
@@ -56,8 +59,13 @@ fn still(series: &Series<'_>, channel: Channel, values: &[f64]) -> Vec<Range<usi
                 && moved.abs() > FROZEN_DIFFERENCES * usual_difference(series, values, &partner, rows.len(), &long)
         } else {
             let longer = t[rows.end - 1] - t[rows.start] > FROZEN_SPANS * series.span;
-            let changes = range(&partner[Range::clone(rows)]);
-            longer && changes > FROZEN_RANGE * whole_range && changes > FROZEN_LEVEL * level
+            let own = &partner[Range::clone(rows)];
+            let changes = range(own);
+            // Next to nothing, in any unit, where the ship moves.
+            let nothing = values[rows.start].abs() < FROZEN_LEVEL * level && size(own) > FROZEN_RANGE * level;
+            let changes =
+                rows.len() >= of_velocity && changes > FROZEN_RANGE * whole_range && changes > FROZEN_LEVEL * level;
+            longer && (nothing || changes)
         }
     };
     long.iter().filter(|s| stands(s)).map(|(_, rows)| Range::clone(rows)).collect()
