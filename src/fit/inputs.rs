@@ -3,20 +3,24 @@
 //!
 //! At the end of a fit each recording has, for an error `a` of an input, the score `s = sum r dr/da` and the information
 //! `i = sum (dr/da)^2` of its weighted residuals `r`: those of the simulation, or in a fit by likelihood the standardised innovations, which
-//! carry no error on. `z = s/sqrt(i)` scatters from recording to recording by what the model lacks. Where the
-//! input of one recording is wrong its z stands apart, by Grubbs's test; where that of one session is, the mean of its recordings differs
+//! carry no error on, in the noise of the calmer recordings. `z = s/sqrt(i)` scatters from recording to recording by what the model lacks. Where the
+//! input of one recording is wrong its z stands apart, by Grubbs's test (Rosner's for several); where that of one session is, the mean of its recordings differs
 //! from that of the others, by Student's t. With `a = -sum s / sum i` the recording would agree with the others (one Gauss-Newton step).
 
 use super::objectives::cost::{Cost, CostOptions, Derivatives};
 use super::objectives::innovations::Innovations;
 use super::solver::task::Task;
+use crate::likelihood::estimate::calm_noise;
 use crate::likelihood::filter::Column;
-use crate::likelihood::noise::Noise;
+use crate::likelihood::noise::fit::guess;
+use crate::likelihood::noise::{Noise, NoisePrior};
 use crate::likelihood::parameters::FreeParameter;
 use crate::model::Model;
 use crate::numerals::sig;
 use crate::recording::Runs;
-use crate::statistics::{corrected, furthest, means_differ_p, median, student_quantile, variance};
+use crate::statistics::{
+    APART_MOST, APART_SHARE, corrected, furthest, means_differ_p, median, student_quantile, variance,
+};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -157,7 +161,10 @@ fn compared(task: &Task, p: &[f64], noise: Option<&Noise>) -> Option<Inputs> {
             let variables: Vec<FreeParameter> =
                 free.iter().map(|i| FreeParameter::common(Column::tangent(&model, *i), None)).collect();
             let integration = task.settings.integration;
-            Innovations::of(&model, runs, integration, &variables, *noise, &at).scores_by_run(&at)
+            // In the noise of all recordings one that differs hides itself.
+            let prior = NoisePrior::around(&guess(runs, &model));
+            let calm = calm_noise(&model, noise, integration, runs, &prior);
+            Innovations::of(&model, runs, integration, &variables, calm, &at).scores_by_run(&at)
         }
         _ => {
             let options = CostOptions { derivatives: Derivatives::Lanes, ..task.settings.cost_options() };
@@ -194,7 +201,8 @@ fn smallest(asked: &Asked, all: &[OfRecording], place: usize, model: &Model, cha
     let known = known(all, place)?;
     let n = known.len() as f64;
     let z: Vec<f64> = known.iter().map(|r| r.z(place)).collect();
-    let quantile = student_quantile(1.0 - 0.5 * chance / n, n - 2.0);
+    let compared = (known.len() / APART_SHARE).clamp(1, APART_MOST) as f64;
+    let quantile = student_quantile(1.0 - 0.5 * chance / (n * compared), n - 2.0);
     let scatter = (variance(&z)? * n / (n - 1.0)).sqrt();
     let middle = median(known.iter().map(|r| r.of(place)[1]))?;
     let smallest = quantile * scatter / middle.sqrt() / asked.unit(model);

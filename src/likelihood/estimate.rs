@@ -193,22 +193,22 @@ pub fn log_posterior(
     likelihood + free.iter().map(|f| f.log_prior(model)).sum::<f64>()
 }
 
-/// The noise of the calmer runs: what disturbs some runs only is no noise.
-pub fn calm_noise(found: &Estimate, integration: Integration, runs: &[Run], prior: &NoisePrior) -> Noise {
-    let filter = Filter::new(&found.model, integration, &[]);
+/// The noise of the calmer runs, from that of all of them: what disturbs some runs only is no noise.
+pub fn calm_noise(model: &Model, noise: &Noise, integration: Integration, runs: &[Run], prior: &NoisePrior) -> Noise {
+    let filter = Filter::new(model, integration, &[]);
     let wanted = Wanted { sums_only: true, ..Wanted::default() };
     let share = |run: &Run, pass: Pass| pass.log_likelihood / run.measured.len() as f64;
     let mut likelihood = Vec::with_capacity(runs.len());
-    filter.each(runs, &found.noise, wanted, share, |share| likelihood.push(share));
+    filter.each(runs, noise, wanted, share, |share| likelihood.push(share));
     let mut order: Vec<usize> = (0..runs.len()).collect();
     order.sort_by(|a, b| likelihood[*b].total_cmp(&likelihood[*a]));
     order.truncate((CALM_SHARE * runs.len() as f64).ceil() as usize);
     order.sort_unstable();
     let some: Vec<&Run> = order.iter().map(|i| &runs[*i]).collect();
-    let tangents = tangents(&found.model, integration, &some, &found.noise);
+    let tangents = tangents(model, integration, &some, noise);
     let tangents: Vec<&Tangent> = tangents.iter().collect();
     let kept = &mut KeptInformation::default();
-    fit_noise(&some, &tangents, &found.model, &found.noise, prior, GATE, CALM_ITERATIONS, kept)
+    fit_noise(&some, &tangents, model, noise, prior, GATE, CALM_ITERATIONS, kept)
 }
 
 /// The noise of all runs by maximum likelihood, under step maps that are linearised along their filtered paths.

@@ -149,12 +149,28 @@ pub fn outlier_p(values: &[f64]) -> f64 {
     StudentsT::new(0.0, 1.0, n - 2.0).map_or(1.0, |d| corrected(d.sf(t).max(f64::MIN_POSITIVE), n))
 }
 
-/// Which of n normal values is furthest from the others to either side, and the chance of that ([`outlier_p`] on both sides).
+/// Most values, one in so many, that may stand apart together ([`furthest`]), and how many at all.
+pub const APART_SHARE: usize = 4;
+/// See [`APART_SHARE`].
+pub const APART_MOST: usize = 3;
+
+/// Which of n normal values is furthest from the others to either side, and the chance of that. Values that stand apart hide one another:
+/// one is compared without those that are further still, up to [`APART_MOST`] of them, and the least chance counts, times the number of
+/// comparisons (Rosner 1983, Technometrics 25, p. 165; each of them Grubbs's, [`outlier_p`] on both sides).
 pub fn furthest(values: &[f64]) -> Option<(usize, f64)> {
-    let opposite: Vec<f64> = values.iter().map(|v| -v).collect();
-    let of = |v: &[f64]| Some(((0..v.len()).max_by(|i, j| v[*i].total_cmp(&v[*j]))?, corrected(outlier_p(v), 2.0)));
-    let (up, down) = (of(values)?, of(&opposite)?);
-    Some(if up.1 <= down.1 { up } else { down })
+    let most = (values.len() / APART_SHARE).clamp(1, APART_MOST);
+    let mut left: Vec<(usize, f64)> = values.iter().copied().enumerate().collect();
+    let mut first: Option<(usize, f64)> = None;
+    for _ in 0..most {
+        let signed = |sign: f64| left.iter().map(|(_, v)| sign * v).collect::<Vec<f64>>();
+        let of = |v: &[f64]| Some(((0..v.len()).max_by(|i, j| v[*i].total_cmp(&v[*j]))?, corrected(outlier_p(v), 2.0)));
+        let (up, down) = (of(&signed(1.0))?, of(&signed(-1.0))?);
+        let (place, p) = if up.1 <= down.1 { up } else { down };
+        let (index, _) = left.remove(place);
+        let (_, least) = first.get_or_insert((index, 1.0));
+        *least = least.min(corrected(p, most as f64));
+    }
+    first
 }
 
 /// Chance that two samples of normal values of one variance have means so far apart, to either side: Student's t with the pooled variance
@@ -282,6 +298,13 @@ mod tests {
         let (below, same) = apart(&[-1.0, -1.2, -0.8, -1.1, -9.0]);
         assert!(below == 4 && (p - same).abs() < 1e-12 * p);
         assert!(apart(&[1.0, 1.2, 0.8, 1.1]).1 > 0.1 && furthest(&[]).is_none());
+        // Three that hide one another, and as many values without them.
+        let mut many: Vec<f64> = (0..24).map(|i| f64::from(i % 5) - 2.0).collect();
+        assert!(apart(&many).1 > 0.1);
+        (many[3], many[11], many[17]) = (-9.0, -8.8, -8.6);
+        let (index, p) = apart(&many);
+        let hidden = outlier_p(&many.iter().map(|v| -v).collect::<Vec<_>>());
+        assert!(index == 3 && p < 2e-3 && hidden > 1e-2, "{index} {p} {hidden}");
         assert!(means_differ_p(&[1.0, 1.1, 0.9], &[1.0, 1.05, 0.9]) > 0.5);
         assert!(means_differ_p(&[1.0, 1.1, 0.9], &[5.0, 5.1, 4.9]) < 1e-4);
         // Student's t of 2 with 4 degrees of freedom, two-sided.

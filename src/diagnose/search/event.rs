@@ -102,8 +102,9 @@ impl PushSearch {
     /// The push that an estimate leaves. An event inflates the noise that it is tested against; where the ship's own forces have
     /// the model's form, calmer runs give a better estimate of the noise.
     fn push(&self, found: &Estimate, runs: &[Run]) -> Option<Push> {
-        let noise =
-            if self.chance.form_holds { calm_noise(found, self.integration, runs, &self.prior) } else { self.noise };
+        let Estimate { model, noise, .. } = found;
+        let calm = || calm_noise(model, noise, self.integration, runs, &self.prior);
+        let noise = if self.chance.form_holds { calm() } else { self.noise };
         self.event(&pushes_left(&Estimate { noise, seen: None, ..found.clone() }, self.integration, runs))
     }
 }
