@@ -129,7 +129,9 @@ numbers! {
     /// Longest step of the noise's logarithms.
     NOISE_STEP_LONGEST: f64 = 1.5, COST;
     /// How far a logarithm of the noise may move before the information is made anew that scales the steps.
-    INFORMATION_REACH: f64 = 1.0, COST;
+    INFORMATION_REACH: f64 = 2.0, COST;
+    /// About as many runs give that information where there are more.
+    INFORMATION_RUNS: usize = 16, COST;
     /// First guess of the coloured part of a sensor noise, as a share of the white part.
     COLOURED_GUESS: f64 = 0.7, CUSTOM;
     /// First guess of its correlation time, in sample periods.

@@ -8,8 +8,8 @@ use crate::likelihood::covariance::Discrete;
 use crate::likelihood::filter::Tangent;
 use crate::likelihood::optimise::{Outcome, Proposal};
 use crate::likelihood::settings::{
-    COLOURED_GUESS, COLOURED_PERIODS, EXACT_SENSOR, FORCE_GUESS, INFORMATION_REACH, LITTLE_FORCE, NOISE_DAMPING,
-    NOISE_STEP_LONGEST,
+    COLOURED_GUESS, COLOURED_PERIODS, EXACT_SENSOR, FORCE_GUESS, INFORMATION_REACH, INFORMATION_RUNS, LITTLE_FORCE,
+    NOISE_DAMPING, NOISE_STEP_LONGEST,
 };
 use crate::model::Model;
 use crate::recording::{Run, or_nan};
@@ -195,7 +195,7 @@ impl NoiseFit<'_> {
 
     /// The expected information of the logarithms, `H_ij = sum s_i s_j / (2 s^2) + e_i e_j / s` with `e_i`, `s_i` the derivatives of
     /// innovation and variance, by differences between noises nudged by [`NUDGE`] (Gupta & Mehra 1974, IEEE Trans. Autom. Control
-    /// 19). Outliers have no part in it.
+    /// 19). Outliers have no part in it. Of many runs it is that of a part of them, evenly spaced, times the samples of all over theirs.
     fn information(&self, v: &[f64; N]) -> SMatrix<f64, N, N> {
         let nudged = |i: usize| {
             let mut w = *v;
@@ -220,8 +220,13 @@ impl NoiseFit<'_> {
             let total = |lanes: Lanes| lanes.to_array()[..runs.len()].iter().sum::<f64>();
             SMatrix::<f64, N, N>::from_fn(|i, j| total(sum[i.max(j)][i.min(j)]))
         };
-        let parts: Vec<_> = self.runs.par_chunks(Lanes::LANES).map(of).collect();
-        parts.iter().fold(SMatrix::zeros(), |sum, part| sum + part)
+        let all: Vec<&[(&Run, &Tangent)]> = self.runs.chunks(Lanes::LANES).collect();
+        let apart = (self.runs.len() / INFORMATION_RUNS).max(1);
+        let some: Vec<&[(&Run, &Tangent)]> = all.iter().copied().step_by(apart).collect();
+        let samples = |of: &[&[(&Run, &Tangent)]]| of.concat().iter().map(|(run, _)| run.measured.len()).sum::<usize>();
+        let times = samples(&all) as f64 / samples(&some) as f64;
+        let parts: Vec<_> = some.into_par_iter().map(of).collect();
+        parts.iter().fold(SMatrix::zeros(), |sum, part| sum + part) * times
     }
 }
 
@@ -432,6 +437,19 @@ mod tests {
         for i in [0, 3, 6, 9] {
             assert!((squares[i] / sum[i]).ln().abs() < 0.7, "{i}: {} {}", squares[i], sum[i]);
         }
+    }
+
+    #[test]
+    fn the_information_of_many_runs_is_nearly_that_of_each() {
+        let prior = NoisePrior::around(&noise());
+        let (model, runs) = (model(), runs(&model(), 2 * INFORMATION_RUNS + 3));
+        let passes = linearised(&runs);
+        let pairs: Vec<(&Run, &Tangent)> = runs.iter().zip(passes.iter().filter_map(|p| p.tangent.as_ref())).collect();
+        let v = noise().to_log();
+        let of = |runs| NoiseFit { runs, model: &model, prior: &prior, gate: f64::INFINITY }.information(&v).diagonal();
+        let each = pairs.chunks(Lanes::LANES).map(of).fold(SVector::<f64, N>::zeros(), |sum, one| sum + one);
+        let all = of(&pairs);
+        assert!(all != each && all.component_div(&each).iter().all(|share| share.ln().abs() < 0.2), "{all} {each}");
     }
 
     #[test]
