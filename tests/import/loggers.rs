@@ -186,6 +186,41 @@ fn of_equals_the_one_that_agrees_more_closely_is_taken() {
     }
 }
 
+#[test]
+fn of_two_sensors_the_calm_one_is_taken() {
+    // Noise of some degrees that no course shows, and a gyro at rest between them.
+    let noise = |row: &Row| 4.0 * (1.7 * row.t * row.t).sin();
+    let both = |row: &Row| format!(",{:.2},{:.2}", (row.heading + noise(row)).rem_euclid(360.0), row.heading);
+    let text = log(",Heading 1,Heading 2", both).replace(",heading,", ",other,");
+    assert_eq!(taken(&read(&text), "psi"), "Heading 2");
+}
+
+#[test]
+fn a_vertical_velocity_is_none_along_the_ship() {
+    let along = |row: &Row| row.course.to_radians().sin_cos();
+    let axes = |row: &Row| {
+        let (sin, cos) = along(row);
+        format!(",{:.3},{:.3},0.02", 10.0 * KNOT * sin, 10.0 * KNOT * cos)
+    };
+    for header in [",E Velocity (m/s),N Velocity (m/s),U Velocity (m/s)", ",V_E [m/s],V_N [m/s],V_U [m/s]"] {
+        let imported = read(&log(header, axes).replace("sog_kn,cog", "a,b"));
+        let u = channel(&imported, 0, Channel::U);
+        assert!((mean(u) - 10.0 * KNOT).abs() < 0.02, "{header}: {}", mean(u));
+        assert!(imported.unused.iter().any(|unused| unused.why.contains("vertical velocity")), "{header}");
+    }
+}
+
+#[test]
+fn names_that_say_less_are_told_apart_by_those_that_say_more() {
+    let text = log(",Speed OG [kn],Helm,Rudder response", |row| format!(",10.00,{0:.1},{0:.1}", row.rudder));
+    let imported = read(&text.replace("sog_kn", "Speed [kn]").replace(",rudder,", ",other,"));
+    assert_eq!(["sog", "delta"].map(|q| taken(&imported, q)), ["Speed OG", "Rudder response"]);
+    // A wind that is said to go somewhere comes from the other side: it is left out.
+    let to = read(&log(",Wind Dir (to),Wind Speed [m/s]", |_| ",80,6.0".to_owned()));
+    assert_eq!(taken(&to, "wind_direction"), "");
+    assert!(to.unused.iter().any(|unused| unused.column == "Wind Dir to"));
+}
+
 /// The usual log with its cells changed, and a header of its own.
 fn changed(header: &str, cells: impl Fn(&Row, Vec<String>) -> Vec<String>) -> String {
     let line = |row: &Row| cells(row, fields(row).split(',').map(str::to_owned).collect()).join(",") + "\n";
@@ -458,13 +493,15 @@ fn a_magnetic_heading_is_brought_to_true_north_by_the_variation_or_reported() {
         });
         turned.collect::<String>()
     };
-    for name in ["Heading [°M]", "Heading magnetic", "HDM"] {
+    for name in ["Heading [°M]", "Heading magnetic", "HDM", "HDG(M)"] {
         let imported = read(&with(name, ",Variation [deg]"));
         assert!(off(&imported) < 0.05, "{name}: {}", off(&imported));
         let imported = read(&with(name, ""));
         assert!((off(&imported) - 12.4).abs() < 0.05);
         contains_all(&notes(&imported), &["a magnetic heading", "--column variation=NAME"]);
     }
+    let lettered = with("HDG(M)", ",Var").replace(",-12.4", ",12.4W");
+    assert!(off(&read(&lettered)) < 0.05);
     // NMEA: the variation is that of RMC.
     let text: String = sailed(0.0).iter().map(|row| rmc(row, "N", "E", "12.4,W") + &hdg(row, 12.4)).collect();
     let imported = read(&text);
@@ -898,10 +935,13 @@ fn a_yaw_rate_in_a_unit_that_nothing_shows_blocks_nothing() {
 fn a_header_of_another_width_and_a_line_that_may_be_cut_are_told() {
     let text = log("", |_| String::new());
     let none = ImportSettings::default();
-    for names in [NAMES.replace("rudder", "rudder [deg, + port]"), NAMES.replace("heading", "\"heading\n[deg]\"")] {
-        let said = written(&text.replacen(NAMES, &names, 1), &none).unwrap_err();
-        contains_all(&said, &[":1:1: this line names columns", "where the lines of data have 8", "in quotes"]);
-    }
+    let said = written(&text.replacen(NAMES, &NAMES.replace("rudder", "rudder [deg, + port]"), 1), &none).unwrap_err();
+    contains_all(&said, &[":1:1: this line names columns", "where the lines of data have 8", "in quotes"]);
+    // A line break inside of quotes, as spreadsheets write them.
+    let broken = NAMES.replace("heading", "\"heading\n[deg]\"").replace("rudder", "\"rudder\n[deg]\"");
+    let imported = read(&text.replacen(NAMES, &broken, 1));
+    assert_eq!(["psi", "delta"].map(|q| taken(&imported, q)), ["heading", "rudder"]);
+    assert!(off(&imported) < 0.01);
     let groups = text.replacen(NAMES, "time,GPS,,,,Steering,,Engine\n,lat,lon,sog_kn,cog,heading,rudder,rpm", 1);
     assert_eq!(taken(&read(&groups), "delta"), "rudder");
     // The last number is 1 of 120: the file was cut.

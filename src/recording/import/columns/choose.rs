@@ -3,7 +3,9 @@
 
 use super::actuators::by_names;
 use super::agree::{CLEARLY, Sight, heading, largest, top};
-use super::names::{Reading, VAGUELY, by_revolutions, is_second_choice, is_unit, name_and_unit, reading, source};
+use super::names::{
+    Reading, VAGUELY, by_revolutions, is_second_choice, is_unit, is_vertical, name_and_unit, reading, source,
+};
 use super::orders::follows;
 use super::scale::{full_turn, of_share};
 use crate::files::suggestion;
@@ -11,7 +13,7 @@ use crate::recording::import::error::ImportError;
 use crate::recording::import::signals::log::{Column, Log, Meaning, needed};
 use crate::recording::import::signals::motion::Track;
 use crate::recording::import::signals::place::places;
-use crate::recording::import::signals::signal::Signal;
+use crate::recording::import::signals::signal::{Signal, size_below};
 use crate::recording::{CHANNELS, Channel, Driven, Quantity};
 use std::collections::{BTreeMap, HashMap};
 
@@ -147,7 +149,7 @@ fn heading_of_courses(candidates: &mut BTreeMap<Meaning, Vec<Candidate>>) {
 /// The columns that are taken and those that are not. Candidates are ranked by what the user says, whether they
 /// contain values that change, whether the data contradict them, whether their partner is of the same sensor, whether more than one letter
 /// or a unit says what they are, how much of their name the quantity explains, whether the file states a unit that fits, how well they
-/// agree with the data, and how many samples they have.
+/// agree with the data, whether they scatter as little as the calmest, and how many samples they have.
 ///
 /// # Errors
 /// [`ImportError::Choice`] for a column that no file has.
@@ -224,11 +226,17 @@ fn candidates<'a>(
         .collect();
     let named = by_names(&free, &open);
     let axes = axes(&names);
+    let all: Vec<&str> = names.iter().map(|(name, _)| *name).collect();
     let mut candidates: BTreeMap<Meaning, Vec<Candidate<'a>>> = BTreeMap::new();
     for (name, columns) in names {
         let of_actuator = named.get(name).map(|channel| (Meaning::Channel(*channel), 1.0));
         let is_forced = forced.contains_key(name);
         let axis = axes.iter().find(|(axis, _)| *axis == name).filter(|_| !is_forced).map(|(_, m)| (*m, 1.0));
+        if !is_forced && is_vertical(name, all.iter().copied()) {
+            let why = "a vertical velocity, beside those to the north and to the east".to_owned();
+            unused.push(Unused { column: name.to_owned(), why });
+            continue;
+        }
         match of_actuator.or(axis).or_else(|| read(name, &columns, &forced)) {
             Some((meaning, _)) if !is_forced && !choices.has(meaning) => {
                 let why = format!("the ship file has no {}", if meaning == SHAFT { "propeller" } else { "rudder" });
@@ -393,6 +401,8 @@ fn best(list: &[Candidate<'_>], meaning: Meaning, partner: Option<&str>, sight: 
     let any_stated = list.iter().any(stated);
     let agreements: Vec<Option<f64>> = list.iter().map(|c| sight.agreement(meaning, &c.columns)).collect();
     let least = agreements.iter().flatten().fold(1.0_f64, |least, a| least.min(1.0 - a));
+    let scatter: Vec<f64> = list.iter().map(|c| if is_motion(meaning) { scatter(&c.columns) } else { 0.0 }).collect();
+    let calm = scatter.iter().copied().fold(f64::INFINITY, f64::min);
     let rank = |i: &usize| {
         let (c, agreement) = (&list[*i], agreements[*i]);
         (
@@ -405,11 +415,26 @@ fn best(list: &[Candidate<'_>], meaning: Meaning, partner: Option<&str>, sight: 
             !is_second_choice(c.name),
             stated(c),
             agreement.map_or(0.5, |a| 1.0 - a) <= CLEARLY * least + CHANCE,
+            scatter[*i] <= CLEARLY * calm,
             // In tenths: a few samples more are no better.
             10 * samples(c) / most.max(1),
         )
     };
     (0..list.len()).rev().max_by_key(rank).unwrap_or(0)
+}
+
+/// Whether a ship moves in a quantity, so that it changes smoothly.
+fn is_motion(meaning: Meaning) -> bool {
+    matches!(meaning, Meaning::Channel(Channel::Psi | Channel::R) | Meaning::GroundSpeed | Meaning::Course)
+}
+
+/// How far a column jumps from value to value, as a share of its size: its second differences below which most are. Of a sensor that repeats
+/// its values the changes are few, and of any the leaps across north.
+fn scatter(columns: &[&Column]) -> f64 {
+    let second = |v: &[f64]| v[0] - 2.0 * v[1] + v[2];
+    let all: Vec<f64> = columns.iter().flat_map(|c| c.v.windows(3).map(second)).collect();
+    let sizes: Vec<f64> = columns.iter().flat_map(|c| c.v.iter().copied()).collect();
+    size_below(&all, 0.95) / size_below(&sizes, 0.95).max(f64::MIN_POSITIVE)
 }
 
 /// How far two columns are of one sensor: 2 where both name the same, 0 where they name two, 1 where one of them names none.

@@ -2,9 +2,9 @@
 //! Whether a column is what its name says is checked against its values elsewhere.
 
 use super::vocabulary::{
-    BESIDE_COUNTS, BESIDE_SHIPS, CALENDAR, CHANGES, CLOCKS, COUNTS, DRIVES, FROM_BOW, FROM_NORTH, LABVIEW, MAGNETIC,
-    MOVES, NEUTRAL, ORDERS, PHRASES, RELATIVE, SHIPS, SINCE, SPEEDS, VAGUE, WATER, WIND, WIND_DIRECTIONS, WIND_SPEEDS,
-    is_on, phrases,
+    BESIDE_COUNTS, BESIDE_SHIPS, CALENDAR, CHANGES, CLOCKS, COUNTS, DRIVES, FROM_BOW, FROM_NORTH, GOES_TO, LABVIEW,
+    MAGNETIC, MOVES, NEUTRAL, ORDERS, PHRASES, RELATIVE, SHIPS, SINCE, SPEEDS, VAGUE, WATER, WIND, WIND_DIRECTIONS,
+    WIND_SPEEDS, is_on, phrases,
 };
 use crate::recording::file::unit::scaled;
 use crate::recording::import::signals::log::Meaning;
@@ -110,6 +110,10 @@ pub fn name_and_unit(field: &str) -> (String, Option<String>) {
             if let Some((degrees, reference)) = referred(unit) {
                 return (format!("{name} {reference}"), Some(degrees.to_owned()));
             }
+            // `HDG (M)`.
+            if unit == "M" && is_direction(&name) {
+                return (format!("{name} magnetic"), None);
+            }
             // `Heading (true)` has no unit in its brackets.
             if is_of_names(unit) {
                 return (format!("{name} {unit}"), None);
@@ -140,6 +144,11 @@ fn referred(unit: &str) -> Option<(&str, &'static str)> {
     parted.filter(|(degrees, _)| crate::recording::Quantity::Angle.factor(degrees).is_some())
 }
 
+/// Whether a name is that of a heading or a course.
+fn is_direction(name: &str) -> bool {
+    meaning(name).is_some_and(|m| matches!(m, Meaning::Course | Meaning::Channel(Channel::Psi)))
+}
+
 /// Whether one letter beside a name is no unit of what it names but a side or a reference: `Latitude (N)`, `Rudder (S)`.
 fn is_side(letter: &str, name: &str) -> bool {
     ["N", "S", "E", "W", "P", "T", "M"].contains(&letter)
@@ -150,7 +159,8 @@ fn is_side(letter: &str, name: &str) -> bool {
 /// Whether what stands in brackets belongs to the name before them: a word of names, a letter or a number.
 fn is_of_names(text: &str) -> bool {
     let lists = [
-        NEUTRAL, ORDERS, RELATIVE, MAGNETIC, CHANGES, MOVES, CLOCKS, WIND, SPEEDS, FROM_NORTH, FROM_BOW, SHIPS, DRIVES,
+        NEUTRAL, ORDERS, RELATIVE, MAGNETIC, CHANGES, MOVES, CLOCKS, WIND, SPEEDS, FROM_NORTH, FROM_BOW, GOES_TO,
+        SHIPS, DRIVES,
     ];
     let phrased = |word: &str| {
         let mut all = PHRASES.iter().chain(VAGUE).flat_map(|(_, list)| phrases(list)).flat_map(|p| p.split(' '));
@@ -236,6 +246,27 @@ fn without_unit(mut parts: Vec<String>) -> Vec<String> {
     parts
 }
 
+/// Words of the third axis beside those of north and east.
+const VERTICAL: [&str; 5] = ["u", "up", "d", "down", "z"];
+
+/// Whether a name is that of a vertical velocity: in the place where two others say north and east it says up or down, `U Velocity` beside
+/// `N Velocity` and `E Velocity`. Alone it is one along the ship.
+pub fn is_vertical<'a>(name: &str, mut all: impl Iterator<Item = &'a str>) -> bool {
+    let own = words(name);
+    let Some(place) = own.iter().position(|word| VERTICAL.contains(&word.as_str())) else { return false };
+    let level = |other: &str, word: &str| {
+        let other = words(other);
+        let same = |i: usize| if i == place { other[i] == word } else { other[i] == own[i] };
+        other.len() == own.len() && (0..own.len()).all(same)
+    };
+    let of = |name: &str| {
+        [("n", Meaning::VelocityNorth), ("e", Meaning::VelocityEast)]
+            .map(|(word, m)| level(name, word) && meaning(name) == Some(m))
+    };
+    let (north, east) = all.by_ref().map(of).fold((false, false), |(n, e), [north, east]| (n || north, e || east));
+    north && east
+}
+
 /// Where the words of a phrase stand in a name; `heading1` and `heading` are one word.
 fn found(parts: &[String], phrase: &str) -> Option<Range<usize>> {
     let wanted: Vec<&str> = phrase.split(' ').collect();
@@ -319,7 +350,7 @@ fn wind(parts: &[String]) -> Option<Option<Meaning>> {
     if !(said || speeds || directions) {
         return None;
     }
-    if parts.iter().any(|p| is_on(ORDERS, p) || (is_on(CHANGES, p) && !is_wind_word(p))) {
+    if parts.iter().any(|p| is_on(ORDERS, p) || is_on(GOES_TO, p) || (is_on(CHANGES, p) && !is_wind_word(p))) {
         return Some(None);
     }
     let relative = any(RELATIVE);

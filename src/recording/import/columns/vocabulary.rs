@@ -8,15 +8,21 @@ use crate::recording::import::signals::log::Meaning::{self, *};
 pub const PHRASES: &[(Meaning, &str)] = &[
     (Latitude, "lat, latitude, breite, breddegrad, breedtegraad, latitudine, latitud"),
     (Longitude, "lon, lng, long, longitude, lange, laenge, lengdegrad, lengtegraad, longitudine, longitud"),
-    (VelocityNorth, "v north, vn, velocity north, north velocity, speed north, north speed, vel n, vel north"),
-    (VelocityEast, "v east, ve, velocity east, east velocity, speed east, east speed, vel e, vel east"),
+    (
+        VelocityNorth,
+        "v north, vn, velocity north, north velocity, speed north, north speed, vel n, vel north, n velocity, n vel, v n",
+    ),
+    (
+        VelocityEast,
+        "v east, ve, velocity east, east velocity, speed east, east speed, vel e, vel east, e velocity, e vel, v e",
+    ),
     (
         Channel(UWater),
         "u water, stw, stw long, stw longitudinal, speed through water, speed through the water, speed in \
          water, water speed, water speed ahead, long water speed, longitudinal water speed, log speed, speed \
          log, fdw, fahrt durchs wasser, fahrt durch wasser, vitesse surface, velocita in acqua, velocidad en \
          el agua, velocidad en agua, fart gjennom vann, fart gjennom vannet, fart genom vatten, fart genom vattnet, fart \
-         gennem vand, fart gennem vandet, snelheid door het water, speed w, spd w, speed tw, em log, doppler log",
+         gennem vand, fart gennem vandet, snelheid door het water, speed w, spd w, speed tw, em log, doppler log, v log",
     ),
     (
         Channel(VWater),
@@ -48,7 +54,7 @@ pub const PHRASES: &[(Meaning, &str)] = &[
     ),
     (
         GroundSpeed,
-        "sog, speed over ground, ground speed, groundspeed, speed g, spd g, gps speed, speed gps, gnss speed, speed gnss, speed made good, fahrt uber grund, \
+        "sog, speed over ground, ground speed, groundspeed, speed g, spd g, speed og, spd og, v gps, gps speed, speed gps, gnss speed, speed gnss, speed made good, fahrt uber grund, \
          fahrt ueber grund, fug, fu g, fart over grunn, vitesse fond, vitesse sur le fond, velocita al suolo, \
          velocita sul fondo, velocidad sobre el fondo, velocidad sobre fondo",
     ),
@@ -90,12 +96,13 @@ pub const VAGUE: &[(Meaning, &str)] = &[
     (Channel(Delta), "delta, δ, helm, steering gear"),
     (Channel(Psi), "ψ"),
     (Channel(R), "r"),
+    (Variation, "var"),
     (Channel(N), "n"),
 ];
 
 /// Words that change nothing of what a column is: where it is from, how it was taken, which of several.
 pub const NEUTRAL: &str = "a, act, actual, ais, angle, average, avg, bow, data, deg, direction, estimate, estimated, fb, fbk, feedback, \
-         filtered, gnss, gps, ground, ins, ist, istwert, main, mean, measured, measurement, meas, mru, nav, \
+         filtered, gnss, gps, ground, reply, response, ins, ist, istwert, main, mean, measured, measurement, meas, mru, nav, \
          own, pos, position, prop, propeller, pv, raw, sensor, shaft, ship, signal, smoothed, t, true, value, \
          vessel, vrai, wgs84, helice, elica, welle, schiff, rechtweisend, verdadero, vero, vera, over, of, \
          the, in, port, starboard, stbd, sb, ps, number, no";
@@ -140,6 +147,8 @@ pub const WATER: &str =
 pub const SPEEDS: &str = "speed, spd, velocity, vel, tws, aws, geschwindigkeit, vitesse, velocita, velocidad";
 /// Words of a direction that counts from north.
 pub const FROM_NORTH: &str = "direction, dir, twd, awd, richtung, direzione, direccion, from";
+/// Words of the direction that something goes to, where that of the wind is the one that it comes from.
+pub const GOES_TO: &str = "to, towards, toward";
 /// Words of a direction that counts from the bow.
 pub const FROM_BOW: &str = "angle, twa, awa, winkel, einfallswinkel, angolo, angulo";
 

@@ -61,7 +61,12 @@ fn named_month(text: &str) -> Option<f64> {
     if let Ok(stamp) = rfc2822::parse(text) {
         return Some(seconds(stamp.timestamp()));
     }
-    NAMED_MONTHS.iter().find_map(|format| utc(DateTime::strptime(format, text).ok()?))
+    let read = |format: &&str| {
+        let civil = DateTime::strptime(format, text).ok()?;
+        // Two figures of a year are of this century.
+        if civil.year() < 100 { utc(civil.with().year(civil.year() + 2000).build().ok()?) } else { utc(civil) }
+    };
+    NAMED_MONTHS.iter().find_map(read)
 }
 
 /// The half of the day that a clock of twelve hours shows.
@@ -107,7 +112,7 @@ pub fn is_date_time(text: &str) -> bool {
 
 /// Whether a text is a date without a time of day.
 pub fn is_date_alone(text: &str) -> bool {
-    text.len() <= 12 && !text.contains(':') && is_date_time(text)
+    text.len() <= 12 && !text.contains(':') && digits(text) < 12 && is_date_time(text)
 }
 
 fn seconds(stamp: Timestamp) -> f64 {
@@ -119,6 +124,10 @@ fn reordered(text: &str, order: DateOrder) -> Option<String> {
     // Fourteen digits are a date and a time of day.
     if text.len() >= 14 && text.bytes().take(14).all(|b| b.is_ascii_digit()) {
         return Some(format!("{}T{}", &text[..8], &text[8..]));
+    }
+    // Twelve begin with the last two of the year.
+    if digits(text) == 12 && (text.len() == 12 || text[12..].starts_with('.')) {
+        return Some(format!("20{}T{}", &text[..6], &text[6..]));
     }
     let at = text.find([' ', 'T', '_']).or_else(|| end_of_date(text)).unwrap_or(text.len());
     let (date, rest) = (text.get(..at)?, text.get(at..)?);
@@ -147,6 +156,11 @@ fn reordered(text: &str, order: DateOrder) -> Option<String> {
         .is_some_and(|b| [b[2], b[5]] == *b"--" && is_digits(&rest[..2]) && is_digits(&rest[3..5]));
     let rest = if dashed { rest.replacen('-', ":", 2) } else { rest };
     Some(if rest.is_empty() { date } else { format!("{date}T{}", rest.replace(' ', "")) })
+}
+
+/// Figures that a text begins with.
+fn digits(text: &str) -> usize {
+    text.bytes().take_while(u8::is_ascii_digit).count()
 }
 
 /// Where a date ends after which a dash and a time of day follow: `2024-06-12-10:00:03`, `20240612-100003`.
@@ -184,8 +198,9 @@ pub fn has_zone(text: &str) -> bool {
 
 /// Whether a date may have the day or the month first: `05/01/2024`, `5-1-2024`.
 pub fn two_orders(text: &str) -> bool {
-    let digits = text.bytes().take_while(u8::is_ascii_digit).count();
-    (1..=2).contains(&digits) && text[digits..].starts_with(['/', '-'])
+    let (digits, mut rest) = (digits(text), text.bytes().skip_while(u8::is_ascii_digit));
+    let separated = rest.next().is_some_and(|b| [b'/', b'-'].contains(&b));
+    (1..=2).contains(&digits) && separated && rest.next().is_some_and(|b| b.is_ascii_digit())
 }
 
 /// Whether dates with slashes have the day first; `None` where no date says.
@@ -442,6 +457,14 @@ mod tests {
     }
 
     #[test]
+    fn a_month_in_letters_leaves_no_doubt_of_the_order() {
+        assert!(
+            two_orders("05/01/2024") && two_orders("5-1-2024") && !two_orders("03-May-24") && !two_orders("2024-05-01")
+        );
+        assert!(is_date_alone("2024-05-01") && !is_date_alone("240501100003"));
+    }
+
+    #[test]
     fn one_instant_written_in_many_ways_is_one_number() {
         let same = [
             "2024-05-01T10:00:03.250Z",
@@ -453,8 +476,11 @@ mod tests {
             "1/5/2024 10:00:03.25",
             "1-5-2024 10:00:03.25 AM",
             "01-May-2024 10:00:03.25",
+            "01-May-24 10:00:03.25",
+            "01-MAY-24 10:00:03.25",
             "May 1, 2024 10:00:03.25",
             "20240501100003.25",
+            "240501100003.25",
             "2024-05-01_10:00:03.25",
             "2024-05-01-10:00:03.25",
             "2024-05-01T10-00-03.25",

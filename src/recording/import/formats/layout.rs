@@ -68,7 +68,40 @@ pub fn decoded(bytes: &[u8]) -> Cow<'_, str> {
             Err(_) => Cow::Owned(bytes.iter().map(|b| char::from(*b)).collect()),
         },
     };
-    if text.contains('\r') && !text.contains('\n') { Cow::Owned(text.replace('\r', "\n")) } else { text }
+    let text = if text.contains('\r') && !text.contains('\n') { Cow::Owned(text.replace('\r', "\n")) } else { text };
+    if text.contains('"') { joined(&text).map_or(text, Cow::Owned) } else { text }
+}
+
+/// Lines that a row with breaks in its quotes may have.
+const QUOTED_LINES: usize = 64;
+
+/// A text without line breaks inside of quotes (RFC 4180, 2.6), which become blanks; blank lines follow, so that every line keeps its number.
+/// `None` where there are none.
+fn joined(text: &str) -> Option<String> {
+    const SEPARATORS: [char; 4] = [',', ';', '\t', '|'];
+    let odd = |line: &str| line.bytes().filter(|b| *b == b'"').count() % 2 == 1;
+    // A quote that begins a field, and one that ends it: one after a number is that of inches.
+    let opens = |line: &str| {
+        let before = line.rfind('"').map(|at| line[..at].trim_end_matches(' '));
+        odd(line) && before.is_some_and(|before| before.is_empty() || before.ends_with(SEPARATORS))
+    };
+    let closes = |line: &str| {
+        let after = line.find('"').map(|at| line[at + 1..].trim());
+        odd(line) && after.is_some_and(|after| after.is_empty() || after.starts_with(SEPARATORS))
+    };
+    let lines: Vec<&str> = text.lines().collect();
+    let (mut out, mut next, mut any) = (String::with_capacity(text.len()), 0, false);
+    while next < lines.len() {
+        let mut below = next + 1..lines.len().min(next + QUOTED_LINES);
+        let last = if opens(lines[next]) { below.find(|l| odd(lines[*l])).filter(|l| closes(lines[*l])) } else { None };
+        let last = last.unwrap_or(next);
+        let whole: Vec<&str> = lines[next..=last].iter().map(|line| line.trim_end_matches('\r')).collect();
+        out += &whole.join(" ");
+        out += &"\n".repeat(whole.len());
+        any |= whole.len() > 1;
+        next = last + 1;
+    }
+    any.then_some(out)
 }
 
 fn wide(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> Cow<'static, str> {
@@ -284,6 +317,16 @@ mod tests {
             (Some(true), Some(false), Some(false))
         );
         assert_eq!((comma(&["1,234", "20:15"]), comma(&["1.234,5"])), (None, Some(true)));
+    }
+
+    #[test]
+    fn a_line_break_in_quotes_is_a_blank_and_lines_keep_their_numbers() {
+        let of = |text: &str| decoded(text.as_bytes()).into_owned();
+        assert_eq!(of("\"Time\n(UTC)\",\"Rudder\r\n(deg)\"\r\n1,2\n"), "\"Time (UTC)\",\"Rudder (deg)\"\n\n\n1,2\n");
+        // Inches, and a quote that nothing closes.
+        for text in ["t,size\n1,12\"\n2,12\"\n", "t,\"size\n1,12\n2,12\n"] {
+            assert_eq!(of(text), text);
+        }
     }
 
     #[test]

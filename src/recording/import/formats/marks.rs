@@ -53,7 +53,7 @@ impl Sides {
     fn of<'a>(meaning: Option<Meaning>, marks: impl Iterator<Item = &'a str> + Clone) -> Option<&'static Self> {
         let all: &[&'static Self] = match meaning? {
             Meaning::Latitude => &[&NORTH_SOUTH],
-            Meaning::Longitude => &[&EAST_WEST],
+            Meaning::Longitude | Meaning::Variation => &[&EAST_WEST],
             Meaning::Channel(Channel::Delta | Channel::DeltaOrder | Channel::Thruster) => {
                 &[&STARBOARD_PORT, &RIGHT_LEFT]
             }
