@@ -196,6 +196,20 @@ fn of_two_sensors_the_calm_one_is_taken() {
 }
 
 #[test]
+fn an_angle_and_a_rate_with_a_column_for_each_side_are_asked_for() {
+    let sides = |v: f64| format!(",{:.1},{:.1}", v.max(0.0), (-v).max(0.0));
+    let none = ImportSettings::default();
+    let text = log(",Rudder starboard,Rudder port", |row| sides(row.rudder)).replace(",rudder,", ",other,");
+    let said = written(&text, &none).unwrap_err();
+    contains_all(&said, &["are one rudder angle to two sides", "write their difference to one column"]);
+    let text = log(",RPM ahead,RPM astern", |row| sides(120.0 * (0.01 * row.t).cos())).replace(",rpm,", ",other,");
+    contains_all(&written(&text, &none).unwrap_err(), &["`RPM ahead` and `RPM astern`", "--column n=NAME"]);
+    // Two rudders turn together.
+    let two = log(",Rudder starboard,Rudder port", |row| format!(",{0:.1},{0:.1}", row.rudder));
+    assert!(written(&two.replace(",rudder,", ",other,"), &none).is_ok());
+}
+
+#[test]
 fn a_vertical_velocity_is_none_along_the_ship() {
     let along = |row: &Row| row.course.to_radians().sin_cos();
     let axes = |row: &Row| {

@@ -8,6 +8,7 @@ use super::names::{
 };
 use super::orders::follows;
 use super::scale::{full_turn, of_share};
+use super::sides::are_sides;
 use crate::files::suggestion;
 use crate::recording::import::error::ImportError;
 use crate::recording::import::signals::log::{Column, Log, Meaning, needed};
@@ -160,6 +161,7 @@ pub fn choose<'a>(logs: &'a [Log], choices: &Choices) -> Result<Choice<'a>, Impo
     let mut order: Vec<Meaning> = candidates.keys().copied().collect();
     order.sort_by_key(|meaning| (turn(*meaning), *meaning));
     let (mut chosen, mut sight, mut decided) = (Chosen::new(), Sight::default(), Vec::new());
+    let mut parted = Vec::new();
     for meaning in order {
         let Some(mut list) = candidates.remove(&meaning) else { continue };
         let partner = leader(meaning).and_then(|leader| chosen.get(&leader)).and_then(|c| c.first());
@@ -177,6 +179,7 @@ pub fn choose<'a>(logs: &'a [Log], choices: &Choices) -> Result<Choice<'a>, Impo
                 chosen.insert(order, found.columns);
             }
         }
+        parted.extend(sides_apart(meaning, &list, best));
         let taken = list.get(best).map_or("", |c| c.name);
         for (i, candidate) in list.into_iter().enumerate() {
             if i == best {
@@ -200,7 +203,7 @@ pub fn choose<'a>(logs: &'a [Log], choices: &Choices) -> Result<Choice<'a>, Impo
         let why = "the direction from north is taken for that of the wind".to_owned();
         unused.extend(angle.first().map(|c| Unused { column: c.name.clone(), why }));
     }
-    let asked = ask_for_units(&mut chosen, &mut unused, choices);
+    let asked = parted.into_iter().chain(ask_for_units(&mut chosen, &mut unused, choices)).collect();
     Ok(Choice { chosen, unused, asked, decided })
 }
 
@@ -289,6 +292,19 @@ fn order_among<'a>(list: &mut Vec<Candidate<'a>>, best: &mut usize) -> Option<Ca
     };
     *best -= usize::from(order < *best);
     Some(list.remove(order))
+}
+
+/// The question for an angle or a rate of an actuator that has a column for each side.
+fn sides_apart(meaning: Meaning, list: &[Candidate<'_>], best: usize) -> Option<String> {
+    let taken = list.get(best).filter(|c| is_actuator(meaning) && !c.forced)?;
+    let other = list.iter().find(|other| are_sides((taken.name, &taken.columns), (other.name, &other.columns)))?;
+    Some(format!(
+        "`{}` and `{}` are one {} to two sides: write their difference to one column, or name the one that counts with `--column {}=NAME`",
+        taken.name,
+        other.name,
+        meaning.words(),
+        meaning.name()
+    ))
 }
 
 /// The columns of all files by their name, in the order in which they come.

@@ -8,5 +8,6 @@ mod evidence;
 pub(super) mod names;
 mod orders;
 mod scale;
+mod sides;
 pub(super) mod take;
 mod vocabulary;

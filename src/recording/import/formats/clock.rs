@@ -294,6 +294,40 @@ pub fn is_of_hour(text: &str) -> bool {
     text.matches(':').count() == 1 && text.contains(['.', ',']) && time_of_day(text).is_some()
 }
 
+/// What stamps of two numbers, `21:40`, are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stamps {
+    /// Hours and minutes of a day, or stamps of another form.
+    HoursMinutes,
+    /// Minutes and seconds.
+    MinutesSeconds,
+    /// Either: a clock that begins at 00:00 may have been started, or it is midnight.
+    Either,
+}
+
+/// What stamps are, by what the user and the header call the first of their two numbers, by numbers that no hour has, and by where they begin.
+pub fn stamps<'a>(
+    texts: impl Iterator<Item = &'a str> + Clone,
+    header: &str,
+    unit: Option<&str>,
+    dated: bool,
+) -> Stamps {
+    let parts = |text: &'a str| text.split_once(':').filter(|(a, b)| is_digits(a) && is_digits(b) && b.len() == 2);
+    let mut written = texts.clone().filter(|t| !t.is_empty());
+    let header = header.to_lowercase();
+    let called = |hours: &[&str]| hours.iter().any(|form| header.contains(form));
+    if dated || !written.clone().all(|t| parts(t).is_some()) || unit == Some("h") || called(&["hh:mm", "h:m"]) {
+        return Stamps::HoursMinutes;
+    }
+    let no_hour = |text: &'a str| parts(text).and_then(|(a, _)| a.parse::<u32>().ok()).is_some_and(|a| a >= 24);
+    if unit == Some("min") || called(&["mm:ss", "m:s", "min:s"]) || texts.clone().any(no_hour) {
+        return Stamps::MinutesSeconds;
+    }
+    let begins =
+        written.next().and_then(parts).is_some_and(|(a, b)| [a, b].iter().all(|p| p.bytes().all(|b| b == b'0')));
+    if begins { Stamps::Either } else { Stamps::HoursMinutes }
+}
+
 /// Times of minutes and seconds that go on past the full hour; gives how often.
 pub fn past_the_hour(times: &mut [f64]) -> usize {
     let steps = times.windows(2).map(|t| t[1] - t[0]).filter(|s| *s > 0.0).collect();
@@ -462,6 +496,22 @@ mod tests {
             two_orders("05/01/2024") && two_orders("5-1-2024") && !two_orders("03-May-24") && !two_orders("2024-05-01")
         );
         assert!(is_date_alone("2024-05-01") && !is_date_alone("240501100003"));
+    }
+
+    #[test]
+    fn stamps_of_two_numbers_are_told_apart_or_asked_for() {
+        let of = |texts: &[&'static str], header: &str, unit: Option<&str>| {
+            stamps(texts.iter().copied(), header, unit, false)
+        };
+        use Stamps::{Either, HoursMinutes, MinutesSeconds};
+        assert_eq!(of(&["10:15", "10:16"], "Time", None), HoursMinutes);
+        assert_eq!(of(&["10:15", "24:16"], "Time", None), MinutesSeconds);
+        assert_eq!(of(&["00:00", "00:01"], "Time", None), Either);
+        assert_eq!(of(&["00:00", "00:01"], "Time mm:ss", None), MinutesSeconds);
+        assert_eq!(of(&["00:00", "00:01"], "Time", Some("min")), MinutesSeconds);
+        assert_eq!(of(&["00:00", "00:01"], "Time", Some("h")), HoursMinutes);
+        assert_eq!(of(&["00:00:00", "00:00:01"], "Time", None), HoursMinutes);
+        assert_eq!(stamps(["00:00", "00:01"].into_iter(), "Time", None, true), HoursMinutes);
     }
 
     #[test]

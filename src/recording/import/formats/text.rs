@@ -2,9 +2,9 @@
 //! What a column means and its unit are not decided here, but for what its header says.
 
 use super::clock::{
-    DAY, DateOrder, FORMS, NumericTime, are_digits_of_day, are_shares_of_day, calendar, date_order, date_time,
+    DAY, DateOrder, FORMS, NumericTime, Stamps, are_digits_of_day, are_shares_of_day, calendar, date_order, date_time,
     digits_of_day, has_zone, is_date_alone, is_date_time, is_of_hour, numeric_time, past_midnight, past_the_hour,
-    spread, time_of_day, two_orders, zone,
+    spread, stamps, time_of_day, two_orders, zone,
 };
 use super::header::{Header, header};
 use super::jumps::{mend, words};
@@ -382,7 +382,7 @@ struct OfDay {
 
 /// Reads a column as times of day: hours, minutes and seconds, apart or in one number, or beside a date the share of the day that a
 /// spreadsheet writes.
-fn of_day(table: &Table<'_>, field: usize, dated: bool) -> OfDay {
+fn of_day(table: &Table<'_>, field: usize, dated: bool, stamps: Stamps) -> OfDay {
     let texts = || table.rows.iter().map(|(_, fields)| fields[field]);
     let marks = Marks::of(texts(), None, table.decimal_comma);
     let numbers: Vec<f64> = texts().map(|t| marks.value(t, table.decimal_comma).unwrap_or(f64::NAN)).collect();
@@ -391,6 +391,8 @@ fn of_day(table: &Table<'_>, field: usize, dated: bool) -> OfDay {
         let time = match (digits, share) {
             (true, _) => digits_of_day(*number),
             (_, true) => Some(DAY * number),
+            // Only seconds have a fraction.
+            _ if stamps == Stamps::MinutesSeconds => time_of_day(&format!("{text}.0")),
             _ => time_of_day(text),
         };
         time.unwrap_or(f64::NAN)
@@ -398,6 +400,27 @@ fn of_day(table: &Table<'_>, field: usize, dated: bool) -> OfDay {
     let of_day: Vec<f64> = texts().zip(&numbers).map(time).collect();
     let known = of_day.iter().filter(|t| t.is_finite()).count();
     OfDay { timed: digits || share || 2 * known >= table.rows.len(), numbers, unit: marks.unit, of_day }
+}
+
+/// What the stamps of a column are, where they are two numbers.
+///
+/// # Errors
+/// [`ImportError::At`] where they may be minutes and seconds, or hours and minutes.
+fn stamps_of(table: &Table<'_>, field: usize, dated: bool, choices: &Choices) -> Result<Stamps, ImportError> {
+    let texts = || table.rows.iter().map(|(_, fields)| fields[field]);
+    let (name, unit) = &table.names[field];
+    let header = format!("{name} {}", unit.as_deref().unwrap_or_default());
+    let found = stamps(texts(), &header, choices.units.get("t").map(String::as_str), dated);
+    if found != Stamps::Either {
+        return Ok(found);
+    }
+    let (line, fields) = &table.rows[0];
+    let message = format!(
+        "`{}` in column `{name}` begins a count of minutes and seconds, or it is midnight: pass `--unit t=min` for minutes and seconds, or \
+         `--unit t=h` for hours and minutes",
+        fields[field]
+    );
+    Err(ImportError::At { path: table.path.to_owned(), line: *line, column: field + 1, message })
 }
 
 /// The time of each row.
@@ -413,7 +436,8 @@ fn times(table: &Table<'_>, choices: &Choices) -> Result<Times, ImportError> {
     let (order, unsure) = order(|| texts(date.unwrap_or(field)));
     let most = |parse: &dyn Fn(&str) -> bool| texts(field).filter(|t| parse(t)).count() * 2 >= table.rows.len();
     let name = &table.names[field].0;
-    let OfDay { numbers, unit: beside, timed, of_day } = of_day(table, field, date.is_some());
+    let stamps = stamps_of(table, field, date.is_some(), choices)?;
+    let OfDay { numbers, unit: beside, timed, of_day } = of_day(table, field, date.is_some(), stamps);
     let day = |row: usize, date: usize| date_time(table.rows[row].1[date], order).unwrap_or(f64::NAN);
     let rows = 0..table.rows.len();
     let dated = date.filter(|date| timed && texts(*date).any(|t| date_time(t, order).is_some()));
@@ -436,9 +460,11 @@ fn times(table: &Table<'_>, choices: &Choices) -> Result<Times, ImportError> {
         Times { clock: Clock::Utc, t, used: vec![date, field], how }
     } else if timed {
         let mut t = of_day;
-        let hours = if texts(field).all(|t| t.is_empty() || is_of_hour(t)) { past_the_hour(&mut t) } else { 0 };
+        let of_hour = stamps == Stamps::MinutesSeconds || texts(field).all(|t| t.is_empty() || is_of_hour(t));
+        let hours = if of_hour { past_the_hour(&mut t) } else { 0 };
         past_midnight(&mut t);
         let how = match hours {
+            0 if stamps == Stamps::MinutesSeconds => format!("`{name}`, minutes and seconds"),
             0 => format!("`{name}`, a time of day without a date"),
             hours => format!(
                 "`{name}`, minutes and seconds, which start again {hours} times at the full hour and are counted on"
