@@ -12,8 +12,8 @@ use crate::diagnose::evidence::forces::only_cancels;
 use crate::diagnose::evidence::kinematic::{agreements, gain};
 use crate::diagnose::evidence::wald::Wald;
 use crate::diagnose::settings::{
-    Effort, FORM_TOLERANCE, INDISTINGUISHABLE, LIKENESS, PARAMETER_PRICE, REFIT, REMAINDER, RESOLVED_SAMPLES,
-    RIVAL_GAP, RIVALS, SETTLE, STARTS, STARTS_OF_SQUARES, TOGETHER_EFFORT, WHOLE_SHARE,
+    BEYOND_DOUBT, Effort, FORM_TOLERANCE, INDISTINGUISHABLE, LIKENESS, PARAMETER_PRICE, REFIT, REMAINDER,
+    RESOLVED_SAMPLES, RIVAL_GAP, RIVALS, SETTLE, STARTS, STARTS_OF_SQUARES, TOGETHER_EFFORT, WHOLE_SHARE,
 };
 use crate::likelihood::estimate::{Estimate, FreeParameter, estimate_above, log_posterior};
 use crate::likelihood::evidence::chi_squared_p;
@@ -255,16 +255,21 @@ impl Competition<'_> {
         alike
     }
 
-    /// Whether the refit confirms the mechanism: significant by Wald's test and by the likelihood itself.
-    fn is_confirmed(&self, Refit { hypothesis, estimate, .. }: &Refit) -> bool {
-        let Problem { integration, runs, candidates, settings, .. } = self.problem;
+    /// Whether the refit confirms the mechanism.
+    fn is_confirmed(&self, found: &Refit) -> bool {
+        self.is_confirmed_at(self.problem.settings.alpha, found)
+    }
+
+    /// Whether the refit confirms the mechanism at a chance: significant by Wald's test and by the likelihood itself.
+    fn is_confirmed_at(&self, alpha: f64, Refit { hypothesis, estimate, .. }: &Refit) -> bool {
+        let Problem { integration, runs, candidates, .. } = self.problem;
         let c = &candidates[hypothesis.candidate];
         let w = amplitudes(&Wald::at(estimate, integration, runs), estimate, c, &hypothesis.extent);
         let gain = 2.0 * (estimate.log_posterior - self.current.log_posterior);
         let statistic = w.statistic().min(gain.max(0.0));
         let p = self.screen.by_chance(hypothesis.candidate, &hypothesis.extent, statistic, w.value.len(), runs);
         let is_so = c.mechanism.probe != Probe::Whole || w.value.iter().all(|share| *share > WHOLE_SHARE);
-        is_so && p < settings.alpha && !only_cancels(c, estimate, runs)
+        is_so && p < alpha && !only_cancels(c, estimate, runs)
     }
 
     /// What is either so or not (two actuators swapped), refitted from where it is wholly so in the model as it was given, where a refit
@@ -342,13 +347,14 @@ impl Competition<'_> {
         (is_shown && self.is_confirmed(&found)).then(|| self.selected(self.pooled(found), true, p, set, why))
     }
 
-    /// The error of a sensor that the saturated model shows, where a refit confirms it and no law of a force explains it.
+    /// The error of a sensor that the saturated model shows, where a refit confirms it beyond doubt, as no test at the base does, and no law of
+    /// a force explains it.
     fn hidden(&self, error: Leading) -> Option<Refit> {
         let Leading { set, extent, amplitude, statistic, p, model, free, noise } = error;
         let hypothesis = Hypothesis { candidate: set[0], extent, amplitude, statistic, p };
         let found = self.settled(hypothesis, &model, &free, &noise);
         let over = || over_any_force(&found.estimate, set[0], &found.hypothesis.extent, self.problem);
-        (self.is_confirmed(&found) && over() > INDISTINGUISHABLE).then_some(found)
+        (self.is_confirmed_at(BEYOND_DOUBT, &found) && over() > INDISTINGUISHABLE).then_some(found)
     }
 
     /// Refits the leader of a ranking and its rivals.
