@@ -16,7 +16,7 @@ use crate::state::STATES;
 use nalgebra::{DMatrix, DVector};
 
 /// Iterations of the noise estimate in a round.
-pub(in crate::fit) const NOISE_ITERATIONS: usize = 5;
+pub(in crate::fit) const NOISE_ITERATIONS: usize = 14;
 
 /// Minus the log-likelihood of runs with the filter's gains fixed, up to a constant: half the sum of squared standardised innovations.
 ///
