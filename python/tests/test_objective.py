@@ -203,7 +203,7 @@ def test_the_derivatives_of_a_likelihood_are_those_of_its_values(likelihood: tri
     grad, jacobian = likelihood.grad(x), likelihood.jacobian(x)
     for j in range(len(x)):
         step = np.zeros_like(x)
-        step[j] = 1e-4 * scales[j]
+        step[j] = 1e-5 * scales[j]
         above, below = x + step, x - step
         width = above[j] - below[j]
         slope = (likelihood.f(above) - likelihood.f(below)) / width
@@ -251,7 +251,7 @@ def test_a_likelihood_is_what_a_fit_by_likelihood_minimises(study: trimtab.Study
 def test_gains_are_renewed_where_one_says(study: trimtab.Study) -> None:
     first = study.objective(objective="likelihood", uncertain=False)
     assert first.names == study.model.free_names
-    second = first.renewed(first.x0 + 0.1 * first.scales)
+    second = first.renewed(first.x0 + 0.3 * first.scales)
     assert first.noise != second.noise and second.names == first.names
     x = first.x0
     assert first.f(x) != second.f(x)
