@@ -18,9 +18,7 @@ use crate::likelihood::parameters::FreeParameter;
 use crate::model::Model;
 use crate::numerals::sig;
 use crate::recording::Runs;
-use crate::statistics::{
-    APART_MOST, APART_SHARE, corrected, furthest, means_differ_p, median, student_quantile, variance,
-};
+use crate::statistics::{corrected, furthest, means_differ_p, median, most_apart, student_quantile, variance};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -201,7 +199,7 @@ fn smallest(asked: &Asked, all: &[OfRecording], place: usize, model: &Model, cha
     let known = known(all, place)?;
     let n = known.len() as f64;
     let z: Vec<f64> = known.iter().map(|r| r.z(place)).collect();
-    let compared = (known.len() / APART_SHARE).clamp(1, APART_MOST) as f64;
+    let compared = most_apart(known.len()) as f64;
     let quantile = student_quantile(1.0 - 0.5 * chance / (n * compared), n - 2.0);
     let scatter = (variance(&z)? * n / (n - 1.0)).sqrt();
     let middle = median(known.iter().map(|r| r.of(place)[1]))?;

@@ -149,16 +149,16 @@ pub fn outlier_p(values: &[f64]) -> f64 {
     StudentsT::new(0.0, 1.0, n - 2.0).map_or(1.0, |d| corrected(d.sf(t).max(f64::MIN_POSITIVE), n))
 }
 
-/// Most values, one in so many, that may stand apart together ([`furthest`]), and how many at all.
-pub const APART_SHARE: usize = 4;
-/// See [`APART_SHARE`].
-pub const APART_MOST: usize = 3;
+/// How many of n values may stand apart together ([`furthest`]): one in four, and three at most.
+pub fn most_apart(n: usize) -> usize {
+    (n / 4).clamp(1, 3)
+}
 
 /// Which of n normal values is furthest from the others to either side, and the chance of that. Values that stand apart hide one another:
-/// one is compared without those that are further still, up to [`APART_MOST`] of them, and the least chance counts, times the number of
+/// one is compared without those that are further still, up to [`most_apart`] of them, and the least chance counts, times the number of
 /// comparisons (Rosner 1983, Technometrics 25, p. 165; each of them Grubbs's, [`outlier_p`] on both sides).
 pub fn furthest(values: &[f64]) -> Option<(usize, f64)> {
-    let most = (values.len() / APART_SHARE).clamp(1, APART_MOST);
+    let most = most_apart(values.len());
     let mut left: Vec<(usize, f64)> = values.iter().copied().enumerate().collect();
     let mut first: Option<(usize, f64)> = None;
     for _ in 0..most {

@@ -9,6 +9,7 @@ use crate::likelihood::filter::{Column, Filter, Gains, Pass, Wanted};
 use crate::likelihood::noise::fit::{KeptInformation, guess};
 use crate::likelihood::noise::{Noise, NoisePrior};
 use crate::likelihood::parameters::{FreeParameter, base_parameters, uncertain_coefficients};
+use crate::likelihood::settings::FIRST;
 use crate::model::Model;
 use crate::recording::Run;
 use crate::simulate::Integration;
@@ -16,7 +17,7 @@ use crate::state::STATES;
 use nalgebra::{DMatrix, DVector};
 
 /// Iterations of the noise estimate in a round.
-pub(in crate::fit) const NOISE_ITERATIONS: usize = 14;
+pub(in crate::fit) const NOISE_ITERATIONS: usize = FIRST.noise_iterations;
 
 /// Minus the log-likelihood of runs with the filter's gains fixed, up to a constant: half the sum of squared standardised innovations.
 ///

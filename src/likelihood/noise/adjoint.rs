@@ -9,7 +9,7 @@ use trimtab_ad::{Lanes, Scalar};
 
 /// What the filter did, in its order.
 #[derive(Default)]
-pub(super) struct Tape {
+struct Tape {
     measurements: Vec<Record>,
     steps: Vec<(Place, Step, usize)>,
 }
@@ -70,15 +70,12 @@ impl Adjoint {
         // By half of each entry of c, since a change of P reaches L from two sides.
         let mut by_ph = [Lanes::zero(); Z];
         (0..Z).for_each(|i| by_ph[i] = w * (self.z[i] * e * 0.5 - along[i]));
-        let mut entry = |l: usize, h: Option<Lanes>| {
-            let half = by_variance * 0.5;
-            by_ph[l] += h.map_or(half, |h| half * h);
-        };
+        let mut entry = |l: usize, h: Lanes| by_ph[l] += by_variance * 0.5 * h;
         match slopes {
-            Some(slopes) => (0..STATES).for_each(|l| entry(l, Some(slopes[l]))),
-            None => entry(*channel, None),
+            Some(slopes) => (0..STATES).for_each(|l| entry(l, slopes[l])),
+            None => entry(*channel, Lanes::one()),
         }
-        entry(9 + channel, None);
+        entry(9 + channel, Lanes::one());
         let mut back = |l: usize, h: Lanes| {
             self.z[l] -= by_error * h;
             for i in 0..Z {

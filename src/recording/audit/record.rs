@@ -133,12 +133,13 @@ pub(super) fn examined(recording: &Recording) -> (Audit, Responses) {
     let recording = turned.as_ref().unwrap_or(recording);
     magnitudes(recording, &mut issues);
     still(recording, &mut issues);
-    let stands = frozen(&Series::from(recording), &mut issues);
+    let whole = Series::from(recording);
+    let stands = frozen(&whole, &mut issues);
     let without = |left: Option<Recording>, (channel, rows): &(Channel, Vec<usize>)| {
         Some(left.as_ref().unwrap_or(recording).without(*channel, rows))
     };
     let moving = stands.iter().fold(None, without);
-    let series = Series::from(moving.as_ref().unwrap_or(recording));
+    let series = moving.as_ref().map_or(whole, Series::from);
     let responses = Responses::of(&series);
     let kinematics = agreement([(&series, &responses)], &mut issues);
     outliers(recording, &reported, &mut issues);

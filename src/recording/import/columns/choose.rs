@@ -235,7 +235,7 @@ fn candidates<'a>(
         let of_actuator = named.get(name).map(|channel| (Meaning::Channel(*channel), 1.0));
         let is_forced = forced.contains_key(name);
         let axis = axes.iter().find(|(axis, _)| *axis == name).filter(|_| !is_forced).map(|(_, m)| (*m, 1.0));
-        if !is_forced && is_vertical(name, all.iter().copied()) {
+        if !is_forced && is_vertical(name, &all) {
             let why = "a vertical velocity, beside those to the north and to the east".to_owned();
             unused.push(Unused { column: name.to_owned(), why });
             continue;

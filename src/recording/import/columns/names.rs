@@ -251,7 +251,7 @@ const VERTICAL: [&str; 5] = ["u", "up", "d", "down", "z"];
 
 /// Whether a name is that of a vertical velocity: in the place where two others say north and east it says up or down, `U Velocity` beside
 /// `N Velocity` and `E Velocity`. Alone it is one along the ship.
-pub fn is_vertical<'a>(name: &str, mut all: impl Iterator<Item = &'a str>) -> bool {
+pub fn is_vertical(name: &str, all: &[&str]) -> bool {
     let own = words(name);
     let Some(place) = own.iter().position(|word| VERTICAL.contains(&word.as_str())) else { return false };
     let level = |other: &str, word: &str| {
@@ -259,12 +259,8 @@ pub fn is_vertical<'a>(name: &str, mut all: impl Iterator<Item = &'a str>) -> bo
         let same = |i: usize| if i == place { other[i] == word } else { other[i] == own[i] };
         other.len() == own.len() && (0..own.len()).all(same)
     };
-    let of = |name: &str| {
-        [("n", Meaning::VelocityNorth), ("e", Meaning::VelocityEast)]
-            .map(|(word, m)| level(name, word) && meaning(name) == Some(m))
-    };
-    let (north, east) = all.by_ref().map(of).fold((false, false), |(n, e), [north, east]| (n || north, e || east));
-    north && east
+    let is_there = |(word, m): (&str, Meaning)| all.iter().any(|other| level(other, word) && meaning(other) == Some(m));
+    [("n", Meaning::VelocityNorth), ("e", Meaning::VelocityEast)].into_iter().all(is_there)
 }
 
 /// Where the words of a phrase stand in a name; `heading1` and `heading` are one word.

@@ -122,7 +122,7 @@ fn seconds(stamp: Timestamp) -> f64 {
 /// The same with the date as ISO 8601 has it: `24.12.2024 10:00` is `2024-12-24 10:00`.
 fn reordered(text: &str, order: DateOrder) -> Option<String> {
     // Fourteen digits are a date and a time of day.
-    if text.len() >= 14 && text.bytes().take(14).all(|b| b.is_ascii_digit()) {
+    if digits(text) >= 14 {
         return Some(format!("{}T{}", &text[..8], &text[8..]));
     }
     // Twelve begin with the last two of the year.

@@ -90,6 +90,10 @@ fn joined(text: &str) -> Option<String> {
         odd(line) && after.is_some_and(|after| after.is_empty() || after.starts_with(SEPARATORS))
     };
     let lines: Vec<&str> = text.lines().collect();
+    // Most logs in quotes have none: they are not copied.
+    if !lines.iter().any(|line| opens(line)) {
+        return None;
+    }
     let (mut out, mut next, mut any) = (String::with_capacity(text.len()), 0, false);
     while next < lines.len() {
         let mut below = next + 1..lines.len().min(next + QUOTED_LINES);
